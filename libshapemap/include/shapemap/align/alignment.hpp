@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "shapemap/core/options.hpp"
+#include "shapemap/core/pose2.hpp"
+
+namespace shapemap {
+
+/// Whether an alignment can be trusted, and if not, why.
+enum class AlignStatus {
+  kOk,
+  kNoShape,                  ///< one of the two has too few shape points
+  kNoCorrespondences,        ///< no similar structure, or the filters dropped all of it
+  kTooFewCorrespondences,    ///< fewer than asked for
+  kTooLittleOverlap,         ///< the aligned scans hardly cover each other
+};
+
+template <>
+struct EnumNames<AlignStatus> {
+  static constexpr std::array<std::string_view, 5> names{"ok", "no-shape", "no-correspondences",
+                                                         "too-few-correspondences", "too-little-overlap"};
+};
+
+/// The answer of align(). There is no pose unless `ok()`: `ref_from_query` then takes the query scan to the frame
+/// of the reference.
+struct Alignment {
+  AlignStatus status = AlignStatus::kNoShape;
+  std::string reason;            ///< one line with the numbers behind `status`; empty when ok
+  Pose2 ref_from_query;          ///< NaN unless ok()
+  double rotation_rad = 0.0;     ///< the rotation of the grid that won
+  int num_correspondences = 0;   ///< that the winning translation keeps
+  double mean_distance_m = 0.0;  ///< among them, in the segment that gave the translation
+  int overlap = 0;               ///< scan overlap after the last step: query points with a partner
+  double overlap_ratio = 0.0;    ///< the same as a share of the query's points
+  int icp_iterations = 0;
+  std::vector<Pose2> query_from_sub_scan;  ///< corrections by decoupled ICP, one per sub-scan; identity without
+
+  bool ok() const { return status == AlignStatus::kOk; }
+};
+
+}  // namespace shapemap

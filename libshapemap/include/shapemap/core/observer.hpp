@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace shapemap {
+
+/// How a caller watches and stops a long run; the library itself never prints. Calls come from one thread.
+struct RunObserver {
+  virtual ~RunObserver() = default;
+  virtual void on_progress(std::size_t /*done*/, std::size_t /*total*/) {}
+  virtual void on_warning(std::string_view /*message*/) {}
+  /// Asked once per position; false ends the run with what has been mapped so far.
+  virtual bool keep_going() { return true; }
+};
+
+}  // namespace shapemap

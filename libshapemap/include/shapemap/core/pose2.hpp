@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+
+#include "shapemap/core/angles.hpp"
+
+namespace shapemap {
+
+using Point2 = Eigen::Vector2d;
+
+/// A rigid motion of the plane. A variable named `b_from_a` takes coordinates in frame a to frame b,
+/// so that `c_from_b * b_from_a` reads as `c_from_a`.
+struct Pose2 {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double theta_rad = 0.0;
+
+  Point2 translation() const { return {x_m, y_m}; }
+};
+
+inline Point2 rotate(const Point2& p, double angle_rad) {
+  const double c = std::cos(angle_rad);
+  const double s = std::sin(angle_rad);
+  return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
+}
+
+inline Point2 operator*(const Pose2& b_from_a, const Point2& p_in_a) {
+  return rotate(p_in_a, b_from_a.theta_rad) + b_from_a.translation();
+}
+
+inline Pose2 operator*(const Pose2& c_from_b, const Pose2& b_from_a) {
+  const Point2 t = c_from_b * b_from_a.translation();
+  return {t.x(), t.y(), wrap_angle(c_from_b.theta_rad + b_from_a.theta_rad)};
+}
+
+inline Pose2 inverse(const Pose2& b_from_a) {
+  const Point2 t = rotate(-b_from_a.translation(), -b_from_a.theta_rad);
+  return {t.x(), t.y(), wrap_angle(-b_from_a.theta_rad)};
+}
+
+inline bool operator==(const Pose2& a, const Pose2& b) {
+  return a.x_m == b.x_m && a.y_m == b.y_m && a.theta_rad == b.theta_rad;
+}
+
+}  // namespace shapemap

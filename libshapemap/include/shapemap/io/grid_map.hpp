@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "shapemap/core/options.hpp"
+#include "shapemap/map/trajectory.hpp"
+#include "shapemap/scan/returns.hpp"
+#include "shapemap/scan/scan.hpp"
+
+namespace shapemap {
+
+struct GridMapOptions {
+  double resolution_m = 0.05;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"resolution-m", "side of a map cell [m]", 0.001, 10}, self.resolution_m);
+  }
+};
+
+/// Occupancy probabilities on a grid. Row 0 is the top of the picture (largest y), as in ROS map_server.
+struct GridMap {
+  double resolution_m = 0.0;
+  Point2 origin_m{0.0, 0.0};  ///< lower left corner of the lower left cell, in the map frame
+  int width_cells = 0;
+  int height_cells = 0;
+  std::vector<std::uint8_t> grey;  ///< row-major; 0 occupied, 255 free, 127 or 128 unknown
+
+  /// Column and row of a point, also outside of the grid.
+  Eigen::Vector2i pixel_at(const Point2& p_in_map_m) const;
+};
+
+/// Ray-traced occupancy grid of the placed positions, built with MRPT's grid map. Throws OutputError when the map
+/// would have more than 400 million cells.
+GridMap build_grid_map(const Log& log, const std::vector<PlacedPosition>& placed, const ReturnOptions& returns,
+                       const GridMapOptions& options);
+
+}  // namespace shapemap

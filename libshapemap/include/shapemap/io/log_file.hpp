@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "shapemap/core/options.hpp"
+#include "shapemap/scan/scan.hpp"
+
+/// Reading and writing logs, whatever their format. Odometry and recorded poses are not even parsed.
+namespace shapemap {
+
+enum class LogFormat { kAuto, kRawlog, kCarmen, kNist };
+
+template <>
+struct EnumNames<LogFormat> {
+  static constexpr std::array<std::string_view, 4> names{"auto", "rawlog", "carmen", "nist"};
+};
+
+enum class LengthUnit { kMetre, kCentimetre, kMillimetre };
+
+template <>
+struct EnumNames<LengthUnit> {
+  static constexpr std::array<std::string_view, 3> names{"m", "cm", "mm"};
+};
+
+/// What a log does not say itself. The geometry is used for the bare form (one sub-scan of numbers a line) and for
+/// CARMEN lines whose number of beams has no convention.
+struct LogReadOptions {
+  std::string sensor_label;  ///< only this laser; empty: the first label found (all sub-scans of a frame)
+  double fov_rad = 0.0;      ///< first to last beam; 0: by convention
+  LengthUnit range_unit = LengthUnit::kMetre;
+  int sub_scans_per_position = 1;
+  double sub_scan_turn_rad = 90 * kDegree;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"sensor-label", "use only the laser of this name"}, self.sensor_label);
+    visit(Field{"fov-deg", "angle from first to last beam, where the log does not say [deg]; 0: by convention", 0, 360,
+                kDegree},
+          self.fov_rad);
+    visit(Field{"range-unit", "unit of the ranges of a bare log"}, self.range_unit);
+    visit(Field{"sub-scans", "sub-scans per position of a bare log", 1, 1000}, self.sub_scans_per_position);
+    visit(Field{"sub-scan-turn-deg", "turn between the sub-scans of a bare log [deg]", -360, 360, kDegree},
+          self.sub_scan_turn_rad);
+  }
+};
+
+/// The format of the (decompressed) content of `path`. Throws InputError when nothing fits.
+LogFormat recognise_log_format(const std::string& path);
+
+/// Reads a whole log, plain or gzip-compressed. A log that is cut off gives what is whole, and a warning that says
+/// where it ends. Throws InputError naming file and line or offset.
+Log read_log(const std::string& path, LogFormat format = LogFormat::kAuto, const LogReadOptions& options = {});
+
+/// One estimated pose per position of `log`, for the odometry fields of the written log.
+struct LogPoses {
+  std::vector<Pose2> map_from_robot;
+};
+
+/// Writes `log` in `format` (gzip-compressed when `path` ends in .gz), whole or not at all. `poses` (as many as
+/// positions, or null) becomes the odometry. Throws OutputError.
+void write_log(const Log& log, const std::string& path, LogFormat format, const LogPoses* poses = nullptr);
+
+/// What a user wants to know of a log before mapping it.
+struct LogSummary {
+  struct Sensor {
+    std::string label;
+    std::size_t num_sub_scans = 0;
+    std::size_t num_beams = 0;  ///< of the first sub-scan
+    double fov_rad = 0.0;
+    double max_range_m = 0.0;         ///< as the log says; 0: it does not
+    double shortest_return_m = 0.0;
+    double longest_return_m = 0.0;
+    double return_ratio = 0.0;        ///< share of readings that hit something
+  };
+  std::string format;
+  std::size_t num_positions = 0;
+  double duration_s = 0.0;
+  std::vector<Sensor> sensors;
+};
+LogSummary summarise(const Log& log);
+
+}  // namespace shapemap

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "shapemap/io/grid_map.hpp"
+
+/// Maps and trajectories in the formats of other tools.
+namespace shapemap {
+
+/// Writes .png, .pgm or .tif by the ending of `path`. With a path to draw, also the positions and a scale bar; the
+/// grey cells below stay what they are elsewhere. Throws OutputError.
+void write_map_image(const GridMap& map, const std::string& path, const std::vector<PlacedPosition>* path_to_draw);
+
+/// The map.yaml that ROS map_server reads, for the image called `image_name` beside it.
+std::string ros_map_yaml(const GridMap& map, const std::string& image_name);
+
+/// TUM lines `t x y z qx qy qz qw`, one per placed position.
+std::string tum_trajectory(const std::vector<PlacedPosition>& placed);
+
+}  // namespace shapemap

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "shapemap/core/options.hpp"
+#include "shapemap/scan/returns.hpp"
+
+namespace shapemap {
+
+enum class Method { kPaper };
+
+template <>
+struct EnumNames<Method> {
+  static constexpr std::array<std::string_view, 1> names{"paper"};
+};
+
+struct ChainOptions {
+  Method method = Method::kPaper;
+  int target_scans = 3;
+  int threads = 1;
+  int seed = 0;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"method", "how scans are aligned"}, self.method);
+    visit(Field{"target-scans", "previous scans that make the target of an alignment", 1, 100}, self.target_scans);
+    visit(Field{"threads", "worker threads; the result does not depend on it", 1, 256}, self.threads);
+    visit(Field{"seed", "seed of everything random", 0, 2147483647}, self.seed);
+  }
+};
+
+/// All options of map_log(), grouped by stage.
+struct MappingOptions {
+  ReturnOptions returns;
+  ChainOptions chain;
+
+  /// Calls `visit(title, group)` for each group; `group` is a struct with `fields`.
+  template <class Self, class Visit>
+  static void groups(Self& self, Visit&& visit) {
+    visit("Returns", self.returns);
+    visit("Chain", self.chain);
+  }
+};
+
+/// Turns every reading of the paper that was settled by measurement back to the literal one.
+void make_strict_paper(MappingOptions& options);
+
+/// Throws ConfigError for the first option that is out of its limits.
+void validate_all(const MappingOptions& options);
+
+}  // namespace shapemap

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "shapemap/align/alignment.hpp"
+#include "shapemap/core/pose2.hpp"
+
+namespace shapemap {
+
+/// One position of the log with a pose.
+struct PlacedPosition {
+  std::size_t position_index = 0;  ///< into Log::positions
+  double timestamp_s = 0.0;
+  Pose2 map_from_robot;
+  /// Small corrections of each sub-scan found by decoupled ICP: pose of the sub-scan's robot frame in the
+  /// position's robot frame. One per sub-scan of the position.
+  std::vector<Pose2> robot_from_sub_scan;
+};
+
+/// Positions that are connected by trusted alignments; poses are relative to its first position.
+struct Fragment {
+  std::vector<PlacedPosition> positions;
+};
+
+/// What became of one position of the log, whether placed or not.
+struct PositionResult {
+  std::size_t position_index = 0;
+  double timestamp_s = 0.0;
+  int fragment = -1;         ///< index into MapResult::fragments; -1: no usable shape, in no fragment
+  bool starts_fragment = false;
+  Alignment alignment;       ///< against the scans before it; meaningless for the first position
+  std::string reason;        ///< empty when aligned; else why not, one line
+};
+
+/// Seconds spent per stage, summed over threads where a stage is threaded.
+struct StageTimes {
+  double shape_s = 0.0;
+  double align_s = 0.0;
+  double icp_s = 0.0;
+  double decoupled_icp_s = 0.0;
+};
+
+struct MapResult {
+  std::vector<Fragment> fragments;        ///< in the order of the log
+  std::vector<PositionResult> positions;  ///< one per position of the log that was looked at
+  int largest_fragment = -1;              ///< the fragment that makes the map; -1: none
+  StageTimes times;
+  bool interrupted = false;               ///< the observer asked to stop; the rest of the log was not looked at
+
+  /// Positions of the largest fragment; empty when there is none.
+  const std::vector<PlacedPosition>& placed() const;
+};
+
+}  // namespace shapemap

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "shapemap/core/options.hpp"
+#include "shapemap/scan/scan.hpp"
+
+/// From ranges to points.
+namespace shapemap {
+
+struct ReturnOptions {
+  double min_range_m = 0.0;                ///< 0: what the log says
+  double max_range_m = 0.0;                ///< 0: what the log says
+  double max_mount_tilt_rad = 30 * kDegree;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"min-range", "shorter readings are no returns [m]; 0: as the log says", 0, 1000}, self.min_range_m);
+    visit(Field{"max-range", "readings from here on are no returns [m]; 0: as the log says", 0, 1e6}, self.max_range_m);
+    visit(Field{"max-mount-tilt-deg", "lasers mounted steeper than this see no floor plan [deg]", 0, 89, kDegree},
+          self.max_mount_tilt_rad);
+  }
+};
+
+/// What a beam hit.
+struct Return {
+  Point2 p_in_robot_m;
+  std::size_t beam = 0;   ///< index into SubScan::ranges_m
+  double range_m = 0.0;
+};
+
+/// The limits that hold for `sub_scan`: the options' where given, else the log's.
+struct RangeLimits {
+  double min_m = 0.0;
+  double max_m = 0.0;  ///< infinity when nobody says
+};
+RangeLimits range_limits(const SubScan& sub_scan, const ReturnOptions& options);
+
+/// Whether a reading is a hit: finite, positive and inside the limits. A reading at the maximum is no hit.
+bool is_return(float range_m, const RangeLimits& limits);
+
+/// The hits of one sub-scan in the robot's frame (x forward at the position's nominal heading 0), projected to the
+/// floor plane and ordered counterclockwise as seen from above, also for clockwise or upside-down sensors.
+/// Empty for a sensor that is tilted more than `options.max_mount_tilt_rad`.
+std::vector<Return> returns_in_robot(const SubScan& sub_scan, const ReturnOptions& options);
+
+/// Where the sensor stands in the robot's frame, with the sub-scan's nominal heading applied.
+Pose2 robot_from_sensor2(const SubScan& sub_scan);
+
+}  // namespace shapemap

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shapemap/core/pose2.hpp"
+
+/// The plain model that every log format is read into.
+namespace shapemap {
+
+/// Where a sensor sits on the robot: x forward, y left, z up; yaw, then pitch, then roll. A laser mounted upside
+/// down has roll pi.
+struct MountPose {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double z_m = 0.0;
+  double yaw_rad = 0.0;
+  double pitch_rad = 0.0;
+  double roll_rad = 0.0;
+};
+
+/// One sweep of one laser. Beam i points at `first_angle_rad + i * angle_step_rad` in the sensor's plane
+/// (0 = sensor's x axis, counterclockwise positive); the step is negative for a clockwise sensor.
+struct SubScan {
+  std::vector<float> ranges_m;       ///< as recorded; NaN where the sensor itself says "no return"
+  double first_angle_rad = 0.0;
+  double angle_step_rad = 0.0;
+  double min_range_m = 0.0;          ///< shorter readings are no returns
+  double max_range_m = 0.0;          ///< readings at or beyond it are no returns; 0 when the log does not say
+  MountPose robot_from_sensor;       ///< where the robot faces its nominal heading
+  double nominal_heading_rad = 0.0;  ///< turn of the robot, or of the sensor on it, since the position's first sub-scan
+  std::string sensor_label;
+
+  double beam_angle_rad(std::size_t beam) const {
+    return first_angle_rad + static_cast<double>(beam) * angle_step_rad;
+  }
+};
+
+/// One place where the robot stood: the sub-scans taken there make one complete scan.
+struct Position {
+  double timestamp_s = 0.0;  ///< as in the log
+  std::vector<SubScan> sub_scans;
+  std::optional<Pose2> reference_pose;  ///< surveyed pose, if the log has one; never used for mapping
+};
+
+struct Log {
+  std::string format;  ///< "rawlog", "carmen", "nist" or "bare"
+  std::vector<Position> positions;
+  std::vector<std::string> warnings;  ///< what was odd but could be read, one line each
+};
+
+}  // namespace shapemap

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/map/mapping_options.hpp"
+
+namespace shapemap {
+
+void make_strict_paper(MappingOptions& /*options*/) {}
+
+void validate_all(const MappingOptions& options) {
+  MappingOptions::groups(options, [](const char*, const auto& group) { validate(group); });
+}
+
+}  // namespace shapemap

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/scan/returns.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace shapemap {
+namespace {
+
+Eigen::Matrix3d rotation_of(const MountPose& mount) {
+  return (Eigen::AngleAxisd(mount.yaw_rad, Eigen::Vector3d::UnitZ()) *
+          Eigen::AngleAxisd(mount.pitch_rad, Eigen::Vector3d::UnitY()) *
+          Eigen::AngleAxisd(mount.roll_rad, Eigen::Vector3d::UnitX()))
+      .toRotationMatrix();
+}
+
+}  // namespace
+
+RangeLimits range_limits(const SubScan& sub_scan, const ReturnOptions& options) {
+  RangeLimits limits;
+  limits.min_m = options.min_range_m > 0.0 ? options.min_range_m : sub_scan.min_range_m;
+  limits.max_m = options.max_range_m > 0.0 ? options.max_range_m : sub_scan.max_range_m;
+  if (!(limits.max_m > 0.0)) limits.max_m = std::numeric_limits<double>::infinity();
+  return limits;
+}
+
+bool is_return(float range_m, const RangeLimits& limits) {
+  return std::isfinite(range_m) && range_m > 0.0F && range_m >= limits.min_m && range_m < limits.max_m;
+}
+
+std::vector<Return> returns_in_robot(const SubScan& sub_scan, const ReturnOptions& options) {
+  const Eigen::Matrix3d robot_from_sensor = rotation_of(sub_scan.robot_from_sensor);
+  const double up = robot_from_sensor(2, 2);  // cosine of the angle between the sensor's z axis and the robot's
+  std::vector<Return> returns;
+  if (std::abs(up) < std::cos(options.max_mount_tilt_rad)) return returns;
+
+  const RangeLimits limits = range_limits(sub_scan, options);
+  const Point2 mount_m(sub_scan.robot_from_sensor.x_m, sub_scan.robot_from_sensor.y_m);
+  returns.reserve(sub_scan.ranges_m.size());
+  for (std::size_t beam = 0; beam < sub_scan.ranges_m.size(); ++beam) {
+    const float range_m = sub_scan.ranges_m[beam];
+    if (!is_return(range_m, limits)) continue;
+    const double angle_rad = sub_scan.beam_angle_rad(beam);
+    const Eigen::Vector3d direction = robot_from_sensor * Eigen::Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0.0);
+    const Point2 p_at_heading = mount_m + static_cast<double>(range_m) * direction.head<2>();
+    returns.push_back({rotate(p_at_heading, sub_scan.nominal_heading_rad), beam, range_m});
+  }
+  const bool clockwise_from_above = (sub_scan.angle_step_rad < 0.0) != (up < 0.0);
+  if (clockwise_from_above) std::reverse(returns.begin(), returns.end());
+  return returns;
+}
+
+Pose2 robot_from_sensor2(const SubScan& sub_scan) {
+  const Eigen::Vector3d forward = rotation_of(sub_scan.robot_from_sensor) * Eigen::Vector3d::UnitX();
+  const Point2 mount_m(sub_scan.robot_from_sensor.x_m, sub_scan.robot_from_sensor.y_m);
+  const Point2 t = rotate(mount_m, sub_scan.nominal_heading_rad);
+  return {t.x(), t.y(), wrap_angle(std::atan2(forward.y(), forward.x()) + sub_scan.nominal_heading_rad)};
+}
+
+}  // namespace shapemap
