@@ -11,6 +11,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from shapemap_sim.arena import ArenaOptions  # noqa: E402
+from shapemap_sim.poses import Array  # noqa: E402
 from shapemap_sim.robot import RobotOptions  # noqa: E402
 from shapemap_sim.sensor import SensorOptions  # noqa: E402
 from shapemap_sim.simulation import Simulation, SimulationOptions  # noqa: E402
@@ -101,10 +102,10 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     return arguments
 
 
-def write_files(prefix: Path, formats: list[str], simulation: Simulation) -> list[Path]:
+def write_files(prefix: Path, formats: list[str], simulation: Simulation, overlaps: Array) -> list[Path]:
     """The files of a run, by format name."""
     writers = {"nist": (".nist", lambda: nist_text(simulation)), "tum": (".tum", lambda: tum_text(simulation)),
-               "truth": (".truth.json", lambda: truth_text(simulation, consecutive_overlaps(simulation)))}
+               "truth": (".truth.json", lambda: truth_text(simulation, overlaps))}
     written = []
     for name in formats:
         suffix, make_text = writers[name]
@@ -114,9 +115,9 @@ def write_files(prefix: Path, formats: list[str], simulation: Simulation) -> lis
     return written
 
 
-def summary(simulation: Simulation) -> str:
+def summary(simulation: Simulation, overlaps: Array) -> str:
     """A few lines about the run."""
-    ranges, overlaps = simulation.ranges, consecutive_overlaps(simulation)
+    ranges = simulation.ranges
     returned = (ranges == ranges).mean()
     lines = [f"seed {simulation.options.seed}: {ranges.shape[0]} positions x {ranges.shape[1]} sub-scans x "
              f"{ranges.shape[2]} beams, {100 * returned:.1f} % of them returned",
@@ -134,7 +135,8 @@ def main(argv: list[str] | None = None) -> int:
     arguments = parse_arguments(argv)
     try:
         simulation = simulate(options_from(arguments, arguments.seed))
-        written = write_files(arguments.out, arguments.formats, simulation)
+        overlaps = consecutive_overlaps(simulation)
+        written = write_files(arguments.out, arguments.formats, simulation, overlaps)
         if arguments.picture:
             from shapemap_sim.picture import save_picture  # matplotlib only when a picture is asked for
             save_picture(arguments.picture, simulation)
@@ -143,7 +145,7 @@ def main(argv: list[str] | None = None) -> int:
         print(f"simulate_arena.py: {error}", file=sys.stderr)
         return 1
     if not arguments.quiet:
-        print(summary(simulation))
+        print(summary(simulation, overlaps))
         print("wrote " + ", ".join(str(path) for path in written))
     return 0
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .clutter import leaves_free, scatter
-from .maze import MazeOptions, cell_centres, outer_panels, plan_openings, plan_route, wall_panels
+from .clutter import leaves_free, outline_points, scatter
+from .maze import MazeOptions, cell_centres, doorway_panels, outer_panels
+from .maze import plan_openings, plan_route, wall_panels
 from .poses import Array, rotate
 from .streams import stream
 from .world import World, panel_faces
@@ -19,10 +20,10 @@ class ArenaOptions:
     """`clutter` 0 is a bare maze, 1 as full as it gets while one can still drive."""
 
     maze: MazeOptions = field(default_factory=MazeOptions)
-    clutter: float = 0.6
-    objects_at_full_clutter: int = 120
+    clutter: float = 0.8
+    objects_at_full_clutter: int = 130
     num_doors: int = 3
-    clearance_m: float = 0.33
+    clearance_m: float = 0.25
     panel_jitter_m: float = 0.01
     turned_panel_share: float = 0.15
 
@@ -32,8 +33,8 @@ def turn_panel(panel: Array, route: Array, options: ArenaOptions, size_m: tuple[
     """The panel `[2, 2]` swung about one end by 8 to 30 degrees, or as it was when that would block the route."""
     angle = np.deg2rad(rng.uniform(8.0, 30.0)) * rng.choice([-1.0, 1.0])
     swung = np.stack([panel[0], panel[0] + rotate(panel[1] - panel[0], angle)])
-    free = leaves_free(panel_faces(swung[0], swung[1]), [], route, options.clearance_m, size_m)
-    return swung if free else panel
+    points = outline_points(panel_faces(swung[0], swung[1]), [])
+    return swung if leaves_free(points, route, options.clearance_m, size_m) else panel
 
 
 def build_world(seed: int, options: ArenaOptions) -> World:
@@ -52,8 +53,10 @@ def build_world(seed: int, options: ArenaOptions) -> World:
         if wall_rng.random() < options.turned_panel_share:
             ends = turn_panel(ends, route, options, size, wall_rng)
         world.faces += panel_faces(ends[0], ends[1], "wall")
+    for panel in doorway_panels(openings, maze, stream(seed, "doorways")):
+        faces = panel_faces(panel[0], panel[1], "wall")
+        if leaves_free(outline_points(faces, []), route, options.clearance_m, size):
+            world.faces += faces
     num_objects = int(round(options.clutter * options.objects_at_full_clutter))
-    faces, arcs = scatter(num_objects, route, options.clearance_m, size, stream(seed, "clutter"))
-    world.faces += faces
-    world.arcs += arcs
+    scatter(num_objects, world, options.clearance_m, stream(seed, "clutter"))
     return world

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Things that lie about in the arena. Each maker returns faces and arcs around a centre; `scatter` keeps only those
-that leave the route free."""
+that leave the route free and touch nothing else."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from collections.abc import Callable
 import numpy as np
 
 from .poses import Array, rotate
-from .world import Arc, Face, arc_outline, distance_to_polyline, face_outline, panel_faces, polygon_faces
-from .world import rectangle_corners
+from .world import Arc, Face, World, arc_outline, distance_to_polyline, face_outline, panel_faces, polygon_faces
+from .world import rectangle_corners, squared_distances
 
 Objects = tuple[list[Face], list[Arc]]
 Maker = Callable[[Array, float, np.random.Generator], Objects]
@@ -92,26 +92,31 @@ def outline_points(faces: list[Face], arcs: list[Arc]) -> Array:
     return np.concatenate(pieces)
 
 
-def leaves_free(faces: list[Face], arcs: list[Arc], route: Array, clearance_m: float, size_m: tuple[float, float]) -> bool:
-    """Whether the objects lie in the hall and keep `clearance_m` from the route `[n, 2]`."""
-    points = outline_points(faces, arcs)
+def leaves_free(points: Array, route: Array, clearance_m: float, size_m: tuple[float, float]) -> bool:
+    """Whether the points `[n, 2]` lie in the hall and keep `clearance_m` from the route `[m, 2]`."""
     inside = np.all((points >= 0.0) & (points <= np.array(size_m)))
     return bool(inside and distance_to_polyline(points, route).min() >= clearance_m)
 
 
-def scatter(num_objects: int, route: Array, clearance_m: float, size_m: tuple[float, float],
-            rng: np.random.Generator) -> Objects:
-    """Up to `num_objects` random things; one that finds no room beside the route in 20 tries is left out."""
-    faces: list[Face] = []
-    arcs: list[Arc] = []
+def stands_apart(points: Array, others: Array, gap_m: float) -> bool:
+    """Whether every point `[n, 2]` is at least `gap_m` from every other one `[m, 2]`."""
+    near = np.all((others > points.min(axis=0) - gap_m) & (others < points.max(axis=0) + gap_m), axis=1)
+    return not near.any() or bool(squared_distances(points, others[near]).min() >= gap_m**2)
+
+
+def scatter(num_objects: int, world: World, clearance_m: float, rng: np.random.Generator, gap_m: float = 0.06) -> None:
+    """Put up to `num_objects` random things between what stands there; one that finds no room beside the route in 20
+    tries is left out."""
+    taken = outline_points(world.faces, world.arcs)
     shares = np.array([share for _, share in MAKERS])
     for _ in range(num_objects):
         maker = MAKERS[int(rng.choice(len(MAKERS), p=shares / shares.sum()))][0]
         for _ in range(20):
-            centre = rng.uniform([0.0, 0.0], size_m)
-            new_faces, new_arcs = maker(centre, rng.uniform(-np.pi, np.pi), rng)
-            if leaves_free(new_faces, new_arcs, route, clearance_m, size_m):
-                faces += new_faces
-                arcs += new_arcs
+            centre = rng.uniform([0.0, 0.0], world.size_m)
+            faces, arcs = maker(centre, rng.uniform(-np.pi, np.pi), rng)
+            points = outline_points(faces, arcs)
+            if leaves_free(points, world.route, clearance_m, world.size_m) and stands_apart(points, taken, gap_m):
+                world.faces += faces
+                world.arcs += arcs
+                taken = np.concatenate([taken, points])
                 break
-    return faces, arcs

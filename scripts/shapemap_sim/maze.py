@@ -19,15 +19,18 @@ Opening = tuple[Cell, Cell]
 
 @dataclass(frozen=True)
 class MazeOptions:
-    """Plan of the arena; lengths in metres, shares of the walls of the maze in 0..1."""
+    """Plan of the arena; lengths in metres. `missing_wall_share` of the maze's walls are
+    taken out; `doorway_share` of the sides of its openings have a short panel; `winding` 0 makes straight routes."""
 
     columns: int = 13
     rows: int = 8
     cell_m: float = 1.2
-    missing_wall_share: float = 0.4
+    missing_wall_share: float = 0.25
+    doorway_share: float = 0.6
     num_halls: int = 3
     corridor_cells: int = 6
-    route_jitter_m: float = 0.12
+    winding: float = 1.0
+    route_jitter_m: float = 0.06
 
 
 def opening(a: Cell, b: Cell) -> Opening:
@@ -121,14 +124,25 @@ def plan_route(openings: set[Opening], options: MazeOptions, rng: np.random.Gene
     if rng.random() < 0.5:
         stops[:, 1] = top - stops[:, 1]
     stops = np.clip(stops, 0, [right, top])
-    costs = {(x, y): 1.0 + 0.5 * rng.random() for x in range(right + 1) for y in range(top + 1)}
+    costs = {(x, y): 1.0 + options.winding * rng.random() for x in range(right + 1) for y in range(top + 1)}
     route = [(int(stops[0][0]), int(stops[0][1]))]
     for stop in stops[1:]:
         leg = cheapest_path(route[-1], (int(stop[0]), int(stop[1])), openings, costs, options)
         for cell in leg:
             costs[cell] += 2.0
         route.extend(leg[1:])
-    return route
+    return without_spurs(route)
+
+
+def without_spurs(route: list[Cell]) -> list[Cell]:
+    """The route less its trips into a dead end and back."""
+    kept: list[Cell] = []
+    for cell in route:
+        if len(kept) >= 2 and kept[-2] == cell:
+            kept.pop()
+        else:
+            kept.append(cell)
+    return kept
 
 
 def cell_centres(cells: list[Cell], options: MazeOptions) -> Array:
@@ -136,15 +150,28 @@ def cell_centres(cells: list[Cell], options: MazeOptions) -> Array:
     return (np.array(cells, dtype=float) + 0.5) * options.cell_m
 
 
+def edge_panel(edge: Opening) -> Array:
+    """Ends `[2, 2]`, in cells, of the panel that would part two neighbouring cells."""
+    (ax, _), (bx, by) = edge
+    corner = np.array([bx, by], dtype=float)
+    return np.stack([corner, corner + (np.array([0.0, 1.0]) if bx > ax else np.array([1.0, 0.0]))])
+
+
 def wall_panels(openings: set[Opening], options: MazeOptions) -> Array:
     """Ends `[n, 2, 2]` of the panel between each two cells that have a wall."""
+    panels = [edge_panel(edge) for edge in all_edges(options) if edge not in openings]
+    return np.array(panels).reshape(-1, 2, 2) * options.cell_m
+
+
+def doorway_panels(openings: set[Opening], options: MazeOptions, rng: np.random.Generator) -> Array:
+    """Ends `[n, 2, 2]` of the short panels that narrow an opening from one side or from both."""
     panels = []
-    for a, b in all_edges(options):
-        if (a, b) in openings:
-            continue
-        corner = np.array(b, dtype=float)
-        side = np.array([0.0, 1.0]) if b[0] > a[0] else np.array([1.0, 0.0])
-        panels.append([corner, corner + side])
+    for edge in (edge for edge in all_edges(options) if edge in openings):
+        low, high = edge_panel(edge)
+        widths = rng.uniform(0.15, 0.28, size=2)
+        for post, inwards, width in ((low, high - low, widths[0]), (high, low - high, widths[1])):
+            if rng.random() < options.doorway_share:
+                panels.append([post, post + width * inwards])
     return np.array(panels).reshape(-1, 2, 2) * options.cell_m
 
 

@@ -12,7 +12,7 @@ from .poses import Array, transform
 from .raycast import RayCaster
 from .robot import Drive, RobotOptions, drive
 from .sensor import SensorOptions, exact_ranges, measure, points_of
-from .world import World
+from .world import World, squared_distances
 
 
 @dataclass(frozen=True)
@@ -55,8 +55,7 @@ def overlap(query: Array, reference: Array, within_m: float = 0.15) -> float:
     away; 0 when one of them is empty."""
     if not len(query) or not len(reference):
         return 0.0
-    squared = ((query[:, None, :] - reference[None, :, :]) ** 2).sum(axis=2)
-    return float((squared.min(axis=1) <= within_m**2).mean())
+    return float((squared_distances(query, reference).min(axis=1) <= within_m**2).mean())
 
 
 def consecutive_overlaps(simulation: Simulation) -> Array:
