@@ -93,7 +93,7 @@ def test_what_keeps_the_rules_passes(tree: Path, path: str, text: str) -> None:
     assert check(tree) == (0, "style: ok\n")
 
 
-@pytest.mark.parametrize("path", ["apps/x/main.cpp", "scripts/x.py", "scripts/x.sh", ".ci/run", "tests/x/CMakeLists.txt"])
+@pytest.mark.parametrize("path", ["apps/a/main.cpp", "scripts/a.py", "scripts/a.sh", ".ci/run", "tests/CMakeLists.txt"])
 def test_every_source_names_its_licence(tree: Path, path: str) -> None:
     write(tree, path, "\n\n# SPDX-License-Identifier: GPL-3.0-or-later\n")
     status, output = check(tree)
