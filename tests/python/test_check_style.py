@@ -81,7 +81,7 @@ def test_a_broken_rule_is_named(tree: Path, path: str, text: str, complaint: str
         ("libshapemap/src/io/map_image.cpp", "#include <opencv2/imgcodecs.hpp>"),
         ("apps/shapemap-cli/report.cpp", "#include <nlohmann/json.hpp>"),
         ("tests/unit/io/a_test.cpp", "#include <mrpt/obs/CRawlog.h>"),
-        ("libshapemap/src/map/a.cpp", "// std::cout is for others\nvoid f(char* s) { std::snprintf(s, 1, \"\"); }"),
+        ("libshapemap/src/map/a.cpp", '// std::cout is for others\nvoid f(char* s) { std::snprintf(s, 1, ""); }'),
         ("libshapemap/src/map/a.cpp", "// " + 117 * "\u00e4"),
         ("libshapemap/src/map/a.cpp", 299 * "\n"),
         ("tests/unit/map/a_test.cpp", 399 * "\n"),
