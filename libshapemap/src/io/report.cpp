@@ -68,22 +68,33 @@ Json log_json(const RunReport& report) {
           {"sensors", sensors}};
 }
 
-Json position_json(const PositionResult& position, const RunReport& report) {
+/// Null where nothing was aligned: at the start of the log and after a position without shape.
+Json alignment_json(const PositionResult& position) {
+  const bool was_aligned = !position.starts_fragment || !position.reason.empty();
+  if (!was_aligned) return nullptr;
   const Alignment& alignment = position.alignment;
-  return {{"index", position.position_index},
-          {"index_in_whole_log", index_in_whole_log(position.position_index, report.selection)},
-          {"timestamp_s", position.timestamp_s},
-          {"fragment", position.fragment},
-          {"starts_fragment", position.starts_fragment},
-          {"status", enum_name(alignment.status)},
-          {"reason", position.reason},
-          {"ref_from_query", pose_json(alignment.ref_from_query)},
+  const auto if_ok = [&](const Pose2& pose) { return alignment.ok() ? pose_json(pose) : Json(nullptr); };
+  return {{"status", enum_name(alignment.status)},
+          {"ref_from_query", if_ok(alignment.ref_from_query)},
+          {"shape_ref_from_query", if_ok(alignment.shape_ref_from_query)},
+          {"icp_ref_from_query", if_ok(alignment.icp_ref_from_query)},
+          {"rotation_deg", alignment.rotation_rad / kDegree},
           {"num_correspondences", alignment.num_correspondences},
           {"mean_distance_m", alignment.mean_distance_m},
           {"overlap", alignment.overlap},
           {"overlap_ratio", alignment.overlap_ratio},
           {"icp_iterations", alignment.icp_iterations},
-          {"query_from_sub_scan", poses_json(alignment.query_from_sub_scan)},
+          {"query_from_sub_scan", poses_json(alignment.query_from_sub_scan)}};
+}
+
+Json position_json(const PositionResult& position, const RunReport& report) {
+  return {{"index", position.position_index},
+          {"index_in_whole_log", index_in_whole_log(position.position_index, report.selection)},
+          {"timestamp_s", position.timestamp_s},
+          {"fragment", position.fragment},
+          {"starts_fragment", position.starts_fragment},
+          {"reason", position.reason},
+          {"alignment", alignment_json(position)},
           {"map_from_robot", nullptr}};
 }
 
