@@ -27,7 +27,9 @@ RangeLimits range_limits(const SubScan& sub_scan, const ReturnOptions& options) 
 }
 
 bool is_return(float range_m, const RangeLimits& limits) {
-  return std::isfinite(range_m) && range_m > 0.0F && range_m >= limits.min_m && range_m < limits.max_m;
+  // The limits are rounded like the readings: a reading of 5.6 is at a maximum of 5.6, although 5.6F < 5.6.
+  return std::isfinite(range_m) && range_m > 0.0F && range_m >= static_cast<float>(limits.min_m) &&
+         range_m < static_cast<float>(limits.max_m);
 }
 
 std::vector<Return> returns_in_robot(const SubScan& sub_scan, const ReturnOptions& options) {
