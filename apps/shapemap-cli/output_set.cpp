@@ -52,6 +52,12 @@ void check_output(const std::string& path, bool force) {
   }
 }
 
+/// `message` about the file that the user knows, not about the temporary one.
+std::string with_name(std::string message, const std::string& temporary_path, const std::string& path) {
+  const std::size_t at = message.find(temporary_path);
+  return at == std::string::npos ? message : message.replace(at, temporary_path.size(), path);
+}
+
 bool same_file(const std::string& a, const std::string& b) {
   if (a == "-" || b == "-") return a == b;
   std::error_code ignored;
@@ -74,7 +80,12 @@ void OutputSet::add(const std::string& path, const Writer& write) {
   if (is_stream(path)) throw OutputError("cannot write '" + path + "': this output needs a file");
   const bool is_new = !fs::exists(status_of(path));
   files_.push_back({path, is_new, std::make_unique<AtomicFile>(path)});
-  write(files_.back().file->temporary_path());
+  const std::string& temporary_path = files_.back().file->temporary_path();
+  try {
+    write(temporary_path);
+  } catch (const OutputError& e) {
+    throw OutputError(with_name(e.what(), temporary_path, path));
+  }
 }
 
 void OutputSet::add_text(const std::string& path, const std::string& content) {
@@ -92,7 +103,7 @@ void OutputSet::commit() {
   try {
     for (; num_done < files_.size(); ++num_done) files_[num_done].file->commit();
   } catch (...) {
-    for (std::size_t i = 0; i < num_done; ++i) {
+    for (std::size_t i = 0; i <= num_done; ++i) {
       std::error_code ignored;
       if (files_[i].is_new) fs::remove(files_[i].path, ignored);
     }

@@ -2,6 +2,8 @@
 #include "shapemap/io/report.hpp"
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 namespace shapemap {
@@ -24,7 +26,13 @@ Json poses_json(const std::vector<Pose2>& poses) {
   return list;
 }
 
-/// Shown as on the command line: in the unit of the option's name.
+/// In the unit of the option's name and without the last bits, which converting there and back leaves behind.
+double shown(double stored, double unit) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.14g", stored / unit);
+  return std::strtod(text, nullptr);
+}
+
 template <class Options>
 void add_options(const Options& options, Json& all) {
   Options::fields(options, [&](const Field& field, const auto& value) {
@@ -32,7 +40,7 @@ void add_options(const Options& options, Json& all) {
     if constexpr (std::is_enum_v<Value>) {
       all[field.name] = enum_name(value);
     } else if constexpr (std::is_same_v<Value, double>) {
-      all[field.name] = value / field.unit;
+      all[field.name] = shown(value, field.unit);
     } else {
       all[field.name] = value;
     }
