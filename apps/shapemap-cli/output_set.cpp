@@ -61,7 +61,8 @@ std::string with_name(std::string message, const std::string& temporary_path, co
 bool same_file(const std::string& a, const std::string& b) {
   if (a == "-" || b == "-") return a == b;
   std::error_code ignored;
-  return fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored) || fs::equivalent(a, b, ignored);
+  const auto full = [&](const std::string& path) { return fs::weakly_canonical(fs::absolute(path), ignored); };
+  return full(a) == full(b) || fs::equivalent(a, b, ignored);
 }
 
 }  // namespace
