@@ -142,16 +142,17 @@ class RawlogReader {
 
 Log read_rawlog(ByteSource& source, const LogReadOptions& options) { return RawlogReader(source, options).read(); }
 
-/// Frames and, if there are poses, the odometry between them: the layout that MRPT's own mapping programs read.
+/// An action, with odometry if there are poses, and a frame per position: MRPT's readers take nothing but such pairs.
 void write_rawlog(const Log& log, const LogPoses* poses, ByteSink& sink) {
+  Pose2 map_from_previous;
   for (std::size_t i = 0; i < log.positions.size(); ++i) {
     const Position& position = log.positions[i];
+    std::optional<Pose2> previous_from_current;
     if (poses != nullptr) {
-      const Pose2& map_from_current = poses->map_from_robot[i];
-      const Pose2 previous_from_current =
-          i > 0 ? inverse(poses->map_from_robot[i - 1]) * map_from_current : map_from_current;
-      sink.write(odometry_to_rawlog(previous_from_current, position.timestamp_s));
+      previous_from_current = inverse(map_from_previous) * poses->map_from_robot[i];
+      map_from_previous = poses->map_from_robot[i];
     }
+    sink.write(action_to_rawlog(previous_from_current, position.timestamp_s));
     sink.write(frame_to_rawlog(position));
   }
 }

@@ -22,7 +22,7 @@ RawlogScan scan_from_rawlog(std::string_view object);
 /// A serialised CSensoryFrame with the sub-scans of `position`.
 std::string frame_to_rawlog(const Position& position);
 
-/// A serialised CActionCollection with one odometry increment.
-std::string odometry_to_rawlog(const Pose2& previous_from_current, double timestamp_s);
+/// A serialised CActionCollection with one odometry increment, or with none.
+std::string action_to_rawlog(const std::optional<Pose2>& previous_from_current, double timestamp_s);
 
 }  // namespace shapemap

@@ -100,16 +100,18 @@ std::string frame_to_rawlog(const Position& position) {
   return serialised(frame);
 }
 
-std::string odometry_to_rawlog(const Pose2& previous_from_current, double timestamp_s) {
-  mrpt::obs::CActionRobotMovement2D movement;
-  movement.timestamp = mrpt_time(timestamp_s);
-  mrpt::obs::CActionRobotMovement2D::TMotionModelOptions model;
-  model.modelSelection = mrpt::obs::CActionRobotMovement2D::mmGaussian;
-  movement.computeFromOdometry(
-      mrpt::poses::CPose2D(previous_from_current.x_m, previous_from_current.y_m, previous_from_current.theta_rad),
-      model);
+std::string action_to_rawlog(const std::optional<Pose2>& previous_from_current, double timestamp_s) {
   mrpt::obs::CActionCollection actions;
-  actions.insert(movement);
+  if (previous_from_current) {
+    mrpt::obs::CActionRobotMovement2D movement;
+    movement.timestamp = mrpt_time(timestamp_s);
+    mrpt::obs::CActionRobotMovement2D::TMotionModelOptions model;
+    model.modelSelection = mrpt::obs::CActionRobotMovement2D::mmGaussian;
+    movement.computeFromOdometry(
+        mrpt::poses::CPose2D(previous_from_current->x_m, previous_from_current->y_m, previous_from_current->theta_rad),
+        model);
+    actions.insert(movement);
+  }
   return serialised(actions);
 }
 

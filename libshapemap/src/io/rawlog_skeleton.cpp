@@ -117,7 +117,9 @@ std::optional<ObjectHeader> parse_object_header(std::string_view bytes) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == ':' || c == '<' || c == '>';
   });
   if (!is_name || std::isalpha(static_cast<unsigned char>(name.front())) == 0) return std::nullopt;
-  return ObjectHeader{name, static_cast<std::uint8_t>(bytes[1 + length]), length + 2};
+  const std::size_t colon = name.rfind(':');
+  const std::string_view own_name = colon == std::string_view::npos ? name : name.substr(colon + 1);
+  return ObjectHeader{own_name, static_cast<std::uint8_t>(bytes[1 + length]), length + 2};
 }
 
 bool looks_like_rawlog(std::string_view content) {

@@ -24,7 +24,7 @@ struct RawlogDamage {
 
 /// Class name and version in front of every object.
 struct ObjectHeader {
-  std::string_view name;  ///< valid until the source is read on
+  std::string_view name;  ///< without namespaces, which MRPT 2 writes and MRPT 1 did not; valid until more is read
   std::uint8_t version = 0;
   std::size_t length = 0;  ///< of the header itself
 };
