@@ -55,8 +55,9 @@ void validate(const Options& options) {
     using Value = std::decay_t<decltype(value)>;
     if constexpr (!std::is_same_v<Value, bool> && std::is_arithmetic_v<Value>) {
       const double shown = static_cast<double>(value) / field.unit;
-      const double slack = 1e-9 * (std::abs(field.highest) + std::abs(field.lowest));  // unit conversion
-      if (field.lowest - slack <= shown && shown <= field.highest + slack) return;     // so that NaN fails
+      const auto slack = [](double limit) { return 1e-9 * std::abs(limit); };  // unit conversion
+      const bool inside = field.lowest - slack(field.lowest) <= shown && shown <= field.highest + slack(field.highest);
+      if (inside) return;  // so that NaN fails
       std::ostringstream why;
       why << "--" << field.name << " is " << shown << ", expected " << field.lowest << " to " << field.highest;
       throw ConfigError(why.str());
