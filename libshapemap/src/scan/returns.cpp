@@ -27,7 +27,9 @@ RangeLimits range_limits(const SubScan& sub_scan, const ReturnOptions& options) 
 }
 
 bool is_return(float range_m, const RangeLimits& limits) {
-  return std::isfinite(range_m) && range_m > 0.0F && range_m >= limits.min_m && range_m < limits.max_m;
+  // The limits are rounded like the readings: a reading of 5.6 is at a maximum of 5.6, although 5.6F < 5.6.
+  return std::isfinite(range_m) && range_m > 0.0F && range_m >= static_cast<float>(limits.min_m) &&
+         range_m < static_cast<float>(limits.max_m);
 }
 
 std::vector<Return> returns_in_robot(const SubScan& sub_scan, const ReturnOptions& options) {
@@ -43,7 +45,8 @@ std::vector<Return> returns_in_robot(const SubScan& sub_scan, const ReturnOption
     const float range_m = sub_scan.ranges_m[beam];
     if (!is_return(range_m, limits)) continue;
     const double angle_rad = sub_scan.beam_angle_rad(beam);
-    const Eigen::Vector3d direction = robot_from_sensor * Eigen::Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0.0);
+    const Eigen::Vector3d direction =
+        robot_from_sensor * Eigen::Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0.0);
     const Point2 p_at_heading = mount_m + static_cast<double>(range_m) * direction.head<2>();
     returns.push_back({rotate(p_at_heading, sub_scan.nominal_heading_rad), beam, range_m});
   }

@@ -32,6 +32,8 @@ struct Alignment {
   AlignStatus status = AlignStatus::kNoShape;
   std::string reason;            ///< one line with the numbers behind `status`; empty when ok
   Pose2 ref_from_query;          ///< NaN unless ok()
+  Pose2 shape_ref_from_query;    ///< the same before ICP, from shape alone
+  Pose2 icp_ref_from_query;      ///< the same after ICP and before decoupled ICP
   double rotation_rad = 0.0;     ///< the rotation of the grid that won
   int num_correspondences = 0;   ///< that the winning translation keeps
   double mean_distance_m = 0.0;  ///< among them, in the segment that gave the translation
@@ -39,6 +41,11 @@ struct Alignment {
   double overlap_ratio = 0.0;    ///< the same as a share of the query's points
   int icp_iterations = 0;
   std::vector<Pose2> query_from_sub_scan;  ///< corrections by decoupled ICP, one per sub-scan; identity without
+
+  /// Seconds spent per stage.
+  double match_s = 0.0;
+  double icp_s = 0.0;
+  double decoupled_icp_s = 0.0;
 
   bool ok() const { return status == AlignStatus::kOk; }
 };

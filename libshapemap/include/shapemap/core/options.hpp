@@ -20,8 +20,8 @@ namespace shapemap {
 /// What is said of an option outside C++. The limits and the name are in the unit of the name: an angle is
 /// called `...-deg`, has `unit = kDegree` and is stored in radians.
 struct Field {
-  const char* name;
-  const char* help;
+  const char* name = "";
+  const char* help = "";
   double lowest = 0.0;   ///< inclusive; ignored for bool and enum
   double highest = 0.0;  ///< inclusive
   double unit = 1.0;     ///< stored value = shown value * unit
@@ -55,8 +55,9 @@ void validate(const Options& options) {
     using Value = std::decay_t<decltype(value)>;
     if constexpr (!std::is_same_v<Value, bool> && std::is_arithmetic_v<Value>) {
       const double shown = static_cast<double>(value) / field.unit;
-      const double slack = 1e-9 * (std::abs(field.highest) + std::abs(field.lowest));  // unit conversion
-      if (field.lowest - slack <= shown && shown <= field.highest + slack) return;     // so that NaN fails
+      const auto slack = [](double limit) { return 1e-9 * std::abs(limit); };  // unit conversion
+      const bool inside = field.lowest - slack(field.lowest) <= shown && shown <= field.highest + slack(field.highest);
+      if (inside) return;  // so that NaN fails
       std::ostringstream why;
       why << "--" << field.name << " is " << shown << ", expected " << field.lowest << " to " << field.highest;
       throw ConfigError(why.str());

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "shapemap/align/align.hpp"
 #include "shapemap/core/options.hpp"
 #include "shapemap/scan/returns.hpp"
+#include "shapemap/shape/polyline_em.hpp"
+#include "shapemap/shape/shape.hpp"
 
 namespace shapemap {
 
@@ -31,12 +34,25 @@ struct ChainOptions {
 /// All options of map_log(), grouped by stage.
 struct MappingOptions {
   ReturnOptions returns;
+  PolylineOptions polylines;
+  ShapeOptions shape;
+  AlignOptions align;
   ChainOptions chain;
 
   /// Calls `visit(title, group)` for each group; `group` is a struct with `fields`.
   template <class Self, class Visit>
   static void groups(Self& self, Visit&& visit) {
     visit("Returns", self.returns);
+    visit("Polylines", self.polylines);
+    visit("Shape", self.shape);
+    visit("Histograms", self.align.histogram);
+    visit("Similarity", self.align.similarity);
+    visit("Rotations", self.align.rotation);
+    visit("Longest common subsequence", self.align.lcs);
+    visit("Filters", self.align.filters);
+    visit("Overlap", self.align.overlap);
+    visit("ICP", self.align.icp);
+    visit("Trust", self.align.trust);
     visit("Chain", self.chain);
   }
 };

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "settings.hpp"
+
+/// What was typed, checked as far as that can be done without looking at the log.
+namespace shapemap::cli {
+
+enum class Verbosity { kQuiet, kNormal, kVerbose };
+
+struct MapArguments {
+  std::string log_path;
+  LogFormat format = LogFormat::kAuto;
+  std::string map_path;
+  std::string trajectory_path;
+  std::string carmen_path;
+  std::string rawlog_path;
+  std::string report_path;
+  bool force = false;
+  bool dump_config = false;  ///< print the options and do nothing else
+  Verbosity verbosity = Verbosity::kNormal;
+  MapSettings settings;
+};
+
+struct InfoArguments {
+  std::string log_path;
+  LogFormat format = LogFormat::kAuto;
+  LogReadOptions reading;
+};
+
+struct ConvertArguments {
+  std::string in_path;
+  std::string out_path;
+  LogFormat from = LogFormat::kAuto;
+  LogFormat to = LogFormat::kAuto;  ///< as given or by the ending of `out_path`; never kAuto
+  bool force = false;
+  LogReadOptions reading;
+};
+
+/// `arguments` are those after the program's name, or after the command's. Nothing is returned when help or the
+/// version was asked for and printed. All throw ConfigError for wrong usage.
+std::optional<MapArguments> parse_map_arguments(const std::vector<std::string>& arguments);
+std::optional<InfoArguments> parse_info_arguments(const std::vector<std::string>& arguments);
+std::optional<ConvertArguments> parse_convert_arguments(const std::vector<std::string>& arguments);
+
+}  // namespace shapemap::cli

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+namespace shapemap::cli {
+
+/// The demo log: beside an installed program, else in the source tree it was built from. Throws InputError.
+std::string demo_log_path();
+
+}  // namespace shapemap::cli

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cstdio>
+
+#include "commands.hpp"
+#include "console.hpp"
+#include "costs.hpp"
+#include "exit_codes.hpp"
+#include "map_outputs.hpp"
+#include "options_file.hpp"
+#include "run_observer.hpp"
+#include "shapemap/core/errors.hpp"
+#include "shapemap/map/map_log.hpp"
+
+namespace shapemap::cli {
+namespace {
+
+std::vector<std::string> unplaced_lines(const MapResult& result, const SelectionOptions& selection) {
+  std::vector<bool> is_placed;
+  for (const PlacedPosition& place : result.placed()) {
+    is_placed.resize(std::max(is_placed.size(), place.position_index + 1));
+    is_placed[place.position_index] = true;
+  }
+  std::vector<std::string> lines;
+  for (const PositionResult& position : result.positions) {
+    const std::size_t index = position.position_index;
+    if (index < is_placed.size() && is_placed[index]) continue;
+    std::string why = position.reason;
+    if (position.fragment >= 0) {
+      why += (why.empty() ? "" : "; ") + ("in fragment " + std::to_string(position.fragment)) +
+             ", which nothing ties to the map";
+    }
+    lines.push_back("position " + std::to_string(index_in_whole_log(index, selection)) + " not placed: " + why);
+  }
+  return lines;
+}
+
+void require_a_map(const MapArguments& arguments, const MapResult& result) {
+  if (!result.placed().empty()) return;
+  std::string why = "'" + arguments.log_path + "': none of its " + std::to_string(result.positions.size()) +
+                    " positions can be placed; nothing written";
+  if (!result.positions.empty()) why += " (the first: " + result.positions.front().reason + ")";
+  throw InputError(why);
+}
+
+void print_summary(const MapArguments& arguments, const MapResult& result, double wall_s) {
+  std::fprintf(stderr, "shapemap-cli: placed %zu of %zu positions (%zu fragment%s) in %.1f s; map: %s\n",
+               result.placed().size(), result.positions.size(), result.fragments.size(),
+               result.fragments.size() == 1 ? "" : "s", wall_s, arguments.map_path.c_str());
+}
+
+void print_details(const Log& log, const RunCosts& costs, const StageTimes& times) {
+  std::fputs(log_summary_text(summarise(log)).c_str(), stderr);
+  std::fprintf(stderr,
+               "seconds     read %.2f, map %.2f (shapes %.2f, alignment %.2f, ICP %.2f, decoupled ICP %.2f), write %.2f\n"
+               "memory      %.0f MiB\n",
+               costs.read_s, costs.map_s, times.shape_s, times.align_s, times.icp_s, times.decoupled_icp_s,
+               costs.write_s, costs.peak_memory_mib);
+}
+
+MapResult map_with_progress(const Log& log, const MapArguments& arguments, std::vector<std::string>& warnings) {
+  ConsoleObserver observer(arguments.verbosity != Verbosity::kQuiet);
+  MapResult result = map_log(log, arguments.settings.mapping, observer);
+  observer.finish();
+  if (result.interrupted || interrupted()) throw Interrupted();
+  warnings.insert(warnings.end(), observer.warnings().begin(), observer.warnings().end());
+  return result;
+}
+
+void add_report(const MapArguments& arguments, const RunReport& report, OutputSet& outputs) {
+  if (!arguments.report_path.empty()) outputs.add_text(arguments.report_path, json_report(report));
+}
+
+}  // namespace
+
+int run_map(const MapArguments& arguments) {
+  const Stopwatch total;
+  MapSettings settings = arguments.settings;
+  if (arguments.dump_config) {
+    print_text(options_file_text(option_table(settings)));
+    return kExitOk;
+  }
+  check_outputs(output_paths(arguments), arguments.log_path, arguments.force);
+  const Log log =
+      select_positions(read_log(arguments.log_path, arguments.format, settings.reading), settings.selection);
+  RunCosts costs;
+  costs.read_s = total.seconds();
+  std::vector<std::string> warnings = log.warnings;
+
+  set_interrupt_policy(OnInterrupt::kFinishStep);
+  const Stopwatch mapping;
+  const MapResult result = map_with_progress(log, arguments, warnings);
+  costs.map_s = mapping.seconds();
+  require_a_map(arguments, result);
+
+  const Stopwatch writing;
+  OutputSet outputs;
+  prepare_outputs(arguments, log, result, outputs);
+  costs.write_s = writing.seconds();
+  costs.wall_s = total.seconds();
+  costs.cpu_s = cpu_seconds();
+  costs.peak_memory_mib = peak_memory_mib();
+  add_report(arguments, {arguments.log_path, log, result, settings.mapping, settings.reading, settings.selection,
+                         settings.grid, warnings, costs}, outputs);
+  if (interrupted()) throw Interrupted();
+  outputs.commit();
+
+  const std::vector<std::string> unplaced = unplaced_lines(result, settings.selection);
+  if (arguments.verbosity != Verbosity::kQuiet) {
+    const bool verbose = arguments.verbosity == Verbosity::kVerbose;
+    const std::size_t max_listed = verbose ? static_cast<std::size_t>(-1) : kMaxListed;
+    print_lines("warning: ", warnings, max_listed);
+    print_lines("", unplaced, max_listed);
+    if (verbose) print_details(log, costs, result.times);
+    print_summary(arguments, result, costs.wall_s);
+  }
+  return unplaced.empty() ? kExitOk : kExitIncomplete;
+}
+
+}  // namespace shapemap::cli

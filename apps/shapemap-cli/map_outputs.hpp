@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "arguments.hpp"
+#include "output_set.hpp"
+#include "shapemap/io/report.hpp"
+
+namespace shapemap::cli {
+
+/// The map.yaml beside the picture.
+std::string ros_yaml_path(const std::string& map_path);
+
+/// All files that a run with `arguments` writes.
+std::vector<std::string> output_paths(const MapArguments& arguments);
+
+/// Draws the map and prepares the files that were asked for, except the report, which is made last.
+void prepare_outputs(const MapArguments& arguments, const Log& log, const MapResult& result, OutputSet& outputs);
+
+}  // namespace shapemap::cli

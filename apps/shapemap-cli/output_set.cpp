@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "output_set.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include "shapemap/core/errors.hpp"
+
+namespace shapemap::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::file_status status_of(const std::string& path) {
+  std::error_code ignored;
+  return fs::status(path, ignored);
+}
+
+/// Where nothing can be put in place afterwards: standard output, a device, a pipe.
+bool is_stream(const std::string& path) {
+  if (path == "-") return true;
+  const fs::file_status status = status_of(path);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+void write_stream(const std::string& path, const std::string& content) {
+  std::FILE* stream = path == "-" ? stdout : std::fopen(path.c_str(), "wb");
+  if (!stream) throw OutputError("cannot write '" + path + "': " + std::strerror(errno));
+  const bool written = std::fwrite(content.data(), 1, content.size(), stream) == content.size();
+  const bool flushed = std::fflush(stream) == 0;
+  const int error = errno;
+  if (stream != stdout) std::fclose(stream);
+  if (!written || !flushed) throw OutputError("cannot write '" + path + "': " + std::strerror(error));
+}
+
+void check_output(const std::string& path, bool force) {
+  if (is_stream(path)) return;
+  const fs::file_status status = status_of(path);
+  if (fs::is_directory(status)) throw OutputError("cannot write '" + path + "': it is a folder");
+  if (fs::exists(status) && !force) throw OutputError("'" + path + "' exists already; --force replaces it");
+  fs::path folder = fs::path(path).parent_path();
+  if (folder.empty()) folder = ".";
+  if (!fs::is_directory(status_of(folder.string()))) {
+    throw OutputError("cannot write '" + path + "': there is no folder '" + folder.string() + "'");
+  }
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw OutputError("cannot write '" + path + "': " + std::strerror(errno));
+  }
+}
+
+/// `message` about the file that the user knows, not about the temporary one.
+std::string with_name(std::string message, const std::string& temporary_path, const std::string& path) {
+  const std::size_t at = message.find(temporary_path);
+  return at == std::string::npos ? message : message.replace(at, temporary_path.size(), path);
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  if (a == "-" || b == "-") return a == b;
+  std::error_code ignored;
+  const auto full = [&](const std::string& path) { return fs::weakly_canonical(fs::absolute(path), ignored); };
+  return full(a) == full(b) || fs::equivalent(a, b, ignored);
+}
+
+}  // namespace
+
+void check_outputs(const std::vector<std::string>& paths, const std::string& input, bool force) {
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (same_file(paths[i], input)) throw ConfigError("'" + paths[i] + "' is both input and output");
+    for (std::size_t j = 0; j < i; ++j) {
+      if (same_file(paths[i], paths[j])) throw ConfigError("'" + paths[i] + "' is given for two outputs");
+    }
+  }
+  for (const std::string& path : paths) check_output(path, force);
+}
+
+void OutputSet::add(const std::string& path, const Writer& write) {
+  if (is_stream(path)) throw OutputError("cannot write '" + path + "': this output needs a file");
+  const bool is_new = !fs::exists(status_of(path));
+  files_.push_back({path, is_new, std::make_unique<AtomicFile>(path)});
+  const std::string& temporary_path = files_.back().file->temporary_path();
+  try {
+    write(temporary_path);
+  } catch (const OutputError& e) {
+    throw OutputError(with_name(e.what(), temporary_path, path));
+  }
+}
+
+void OutputSet::add_text(const std::string& path, const std::string& content) {
+  if (is_stream(path)) {
+    streams_.push_back({path, content});
+  } else {
+    add(path, [&](const std::string& temporary_path) { write_file(temporary_path, content); });
+  }
+}
+
+void OutputSet::commit() {
+  // Streams first: they cannot be taken back, and the files need nothing but a rename any more.
+  for (const Stream& stream : streams_) write_stream(stream.path, stream.content);
+  std::size_t num_done = 0;
+  try {
+    for (; num_done < files_.size(); ++num_done) files_[num_done].file->commit();
+  } catch (...) {
+    for (std::size_t i = 0; i <= num_done; ++i) {
+      std::error_code ignored;
+      if (files_[i].is_new) fs::remove(files_[i].path, ignored);
+    }
+    throw;
+  }
+}
+
+}  // namespace shapemap::cli

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "progress_bar.hpp"
+#include "shapemap/core/observer.hpp"
+#include "signals.hpp"
+
+namespace shapemap::cli {
+
+/// Feeds the progress bar, keeps warnings for later, and stops the run on Ctrl-C.
+class ConsoleObserver : public RunObserver {
+ public:
+  explicit ConsoleObserver(bool show_progress) : progress_(show_progress) {}
+
+  void on_progress(std::size_t done, std::size_t total) override { progress_.update(done, total); }
+  void on_warning(std::string_view message) override { warnings_.emplace_back(message); }
+  bool keep_going() override { return !interrupted(); }
+
+  void finish() { progress_.clear(); }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  ProgressBar progress_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace shapemap::cli

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "shapemap/io/grid_map.hpp"
+#include "shapemap/io/log_file.hpp"
+#include "shapemap/io/log_selection.hpp"
+#include "shapemap/map/mapping_options.hpp"
+
+namespace shapemap::cli {
+
+struct DrawOptions {
+  bool draw_path = false;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"draw-path", "draw the positions and a scale bar into the map"}, self.draw_path);
+  }
+};
+
+/// All that the options file holds: what is read from where and written to where is not part of it.
+struct MapSettings {
+  LogReadOptions reading;
+  SelectionOptions selection;
+  MappingOptions mapping;
+  GridMapOptions grid;
+  DrawOptions drawing;
+
+  template <class Self, class Visit>
+  static void groups(Self& self, Visit&& visit) {
+    visit("Reading", self.reading);
+    visit("Selection", self.selection);
+    MappingOptions::groups(self.mapping, visit);
+    visit("Map", self.grid);
+    visit("Drawing", self.drawing);
+  }
+};
+
+}  // namespace shapemap::cli

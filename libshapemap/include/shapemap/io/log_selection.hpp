@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+
+#include "shapemap/core/options.hpp"
+#include "shapemap/scan/scan.hpp"
+
+namespace shapemap {
+
+/// Which positions of a log are looked at: `skip` are left out, then every `every`-th counts, then `first` of those.
+struct SelectionOptions {
+  int first = 0;
+  int skip = 0;
+  int every = 1;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"first", "use only so many positions; 0: all", 0, 2147483647}, self.first);
+    visit(Field{"skip", "leave out so many positions at the start", 0, 2147483647}, self.skip);
+    visit(Field{"every", "use every n-th position of the rest", 1, 2147483647}, self.every);
+  }
+};
+
+/// The log with the selected positions only. Throws ConfigError when that leaves none of a log that has some.
+Log select_positions(Log log, const SelectionOptions& options);
+
+/// Where the selected position `index` stood in the whole log.
+std::size_t index_in_whole_log(std::size_t index, const SelectionOptions& options);
+
+}  // namespace shapemap

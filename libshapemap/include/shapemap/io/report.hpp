@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "shapemap/io/grid_map.hpp"
+#include "shapemap/io/log_file.hpp"
+#include "shapemap/io/log_selection.hpp"
+#include "shapemap/map/map_log.hpp"
+
+/// The account of a run, for people and scripts.
+namespace shapemap {
+
+/// What a run cost; the caller measures it.
+struct RunCosts {
+  double read_s = 0.0;
+  double map_s = 0.0;
+  double write_s = 0.0;  ///< up to the report itself
+  double wall_s = 0.0;
+  double cpu_s = 0.0;
+  double peak_memory_mib = 0.0;
+};
+
+struct RunReport {
+  std::string log_path;
+  const Log& log;  ///< the positions that were looked at
+  const MapResult& result;
+  const MappingOptions& mapping;
+  const LogReadOptions& reading;
+  const SelectionOptions& selection;
+  const GridMapOptions& grid;
+  std::vector<std::string> warnings;
+  RunCosts costs;
+};
+
+/// One JSON object; see docs/cli.md for its members. What is not a number (a pose that does not exist) is null.
+std::string json_report(const RunReport& report);
+
+/// Names and versions of the library and of what it is built on.
+std::vector<std::pair<std::string, std::string>> component_versions();
+
+}  // namespace shapemap

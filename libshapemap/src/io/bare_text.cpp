@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <utility>
+
+#include "nist_text.hpp"
+
+namespace shapemap {
+namespace {
+
+constexpr const char* kLabel = "laser";
+
+double metres_per(LengthUnit unit) {
+  if (unit == LengthUnit::kMillimetre) return 0.001;
+  if (unit == LengthUnit::kCentimetre) return 0.01;
+  return 1.0;
+}
+
+class BareReader {
+ public:
+  BareReader(ByteSource& source, const LogReadOptions& options) : source_(source), lines_(source), options_(options) {
+    log_.format = "bare";
+  }
+
+  Log read() {
+    if (!(options_.fov_rad > 0.0)) {
+      throw InputError(source_.path() + ": lines of numbers do not say their field of view; give --fov-deg");
+    }
+    LaserChoice choice(options_.sensor_label);
+    while (const std::optional<std::string_view> line = lines_.next()) {
+      Words words(line->substr(0, line->find('#')), ',');
+      if (words.count_left() > 0 && choice.takes(kLabel, true)) add(read_scan(words));
+    }
+    choice.report(source_.path(), log_);
+    finish_log(source_, log_);
+    warn_of_incomplete_position();
+    return std::move(log_);
+  }
+
+ private:
+  SubScan read_scan(Words& words) {
+    const std::size_t num_beams = words.count_left();
+    if (num_beams < 2) throw lines_.error("one number, expected a scan of two or more");
+    if (num_beams_ == 0) num_beams_ = num_beams;
+    if (num_beams != num_beams_) {
+      throw lines_.error(std::to_string(num_beams) + " numbers, but the lines before have " +
+                         std::to_string(num_beams_));
+    }
+    SubScan scan;
+    scan.sensor_label = kLabel;
+    scan.first_angle_rad = -options_.fov_rad / 2;
+    scan.angle_step_rad = options_.fov_rad / static_cast<double>(num_beams - 1);
+    scan.ranges_m.reserve(num_beams);
+    for (std::size_t i = 0; i < num_beams; ++i) {
+      const std::string_view word = words.next();
+      const std::optional<float> range_m = parse_range(word, metres_per(options_.range_unit));
+      if (!range_m) throw lines_.error("reading " + std::to_string(i + 1) + " is '" + std::string(word) + "'");
+      scan.ranges_m.push_back(*range_m);
+    }
+    return scan;
+  }
+
+  void add(SubScan scan) {
+    const auto wanted = static_cast<std::size_t>(options_.sub_scans_per_position);
+    if (log_.positions.empty() || log_.positions.back().sub_scans.size() == wanted) {
+      Position position;
+      position.timestamp_s = static_cast<double>(log_.positions.size());  // nothing else is known
+      log_.positions.push_back(std::move(position));
+    }
+    std::vector<SubScan>& sub_scans = log_.positions.back().sub_scans;
+    scan.nominal_heading_rad = wrap_angle(static_cast<double>(sub_scans.size()) * options_.sub_scan_turn_rad);
+    sub_scans.push_back(std::move(scan));
+  }
+
+  void warn_of_incomplete_position() {
+    const std::size_t got = log_.positions.back().sub_scans.size();
+    const auto wanted = static_cast<std::size_t>(options_.sub_scans_per_position);
+    if (got == wanted) return;
+    log_.warnings.push_back(source_.path() + ": the last position has only " + std::to_string(got) + " of " +
+                            std::to_string(wanted) + " sub-scans");
+  }
+
+  ByteSource& source_;
+  LineReader lines_;
+  const LogReadOptions& options_;
+  Log log_;
+  std::size_t num_beams_ = 0;
+};
+
+}  // namespace
+
+Log read_bare(ByteSource& source, const LogReadOptions& options) { return BareReader(source, options).read(); }
+
+}  // namespace shapemap

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// CARMEN logs. Only what is needed is parsed: pose and odometry fields are stepped over as words, whatever they hold.
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "carmen.hpp"
+#include "log_formats.hpp"
+#include "mount_pose.hpp"
+#include "no_return_level.hpp"
+#include "text.hpp"
+
+namespace shapemap {
+namespace {
+
+constexpr std::size_t kFlaserPoseWords = 6;       // x y theta odom_x odom_y odom_theta
+constexpr std::size_t kRobotLaserPoseWords = 11;  // laser pose, robot pose, tv rv forward_safety side_safety turn_axis
+
+/// Readings are only taken when the line has them, so that a wrong count cannot ask for memory.
+std::vector<float> read_ranges(Words& words, const LineReader& lines) {
+  const std::string_view word = words.next();
+  const std::optional<long long> count = parse_count(word);
+  if (!count || *count < 1) {
+    throw lines.error("'" + std::string(word) + "' where the number of readings should be");
+  }
+  const std::size_t num_left = words.count_left();
+  if (static_cast<unsigned long long>(*count) > num_left) {
+    throw lines.error("too few values: the line announces " + std::to_string(*count) + " readings but has only " +
+                      std::to_string(num_left) + " more values");
+  }
+  std::vector<float> ranges_m;
+  ranges_m.reserve(static_cast<std::size_t>(*count));
+  for (long long i = 0; i < *count; ++i) {
+    const std::string_view reading = words.next();
+    const std::optional<float> range_m = parse_range(reading, 1.0);
+    if (!range_m) throw lines.error("reading " + std::to_string(i + 1) + " is '" + std::string(reading) + "'");
+    ranges_m.push_back(*range_m);
+  }
+  return ranges_m;
+}
+
+double read_finite(Words& words, const LineReader& lines, const char* what) {
+  const std::string_view word = words.next();
+  const std::optional<double> value = parse_number(word);
+  if (word.empty()) throw lines.error(std::string("too few values: ") + what + " is missing");
+  if (!value || !std::isfinite(*value)) throw lines.error(std::string(what) + " is '" + std::string(word) + "'");
+  return *value;
+}
+
+class CarmenReader {
+ public:
+  CarmenReader(ByteSource& source, const LogReadOptions& options)
+      : source_(source), lines_(source), options_(options), choice_(options.sensor_label) {
+    log_.format = "carmen";
+  }
+
+  Log read() {
+    while (const std::optional<std::string_view> line = lines_.next()) read_line(*line);
+    choice_.report(source_.path(), log_);
+    finish_log(source_, log_);
+    limit_flaser_ranges();
+    return std::move(log_);
+  }
+
+ private:
+  void read_line(std::string_view line) {
+    Words words(line);
+    const std::string_view keyword = words.next();
+    if (keyword == "PARAM") read_param(words);
+    if (keyword == "FLASER" && choice_.takes("FLASER", true)) read_flaser(words);
+    if (keyword == "ROBOTLASER1" && choice_.takes("ROBOTLASER1", true)) read_robot_laser(words);
+    if (keyword == "#") read_remark(words);
+  }
+
+  void read_param(Words words) {
+    const std::string_view name = words.next();
+    if (name != "robot_front_laser_max" && name != "robot_frontlaser_max") return;
+    const std::optional<double> value = parse_number(words.next());
+    if (value && std::isfinite(*value) && *value > 0.0) param_max_range_m_ = *value;
+  }
+
+  /// What CARMEN has no field for; written by write_carmen().
+  void read_remark(Words words) {
+    if (words.next() != "shapemap") return;
+    const std::string_view what = words.next();
+    if (what == "same-position") joins_previous_ = true;
+    if (what == "mount") mount_ = read_mount(words);
+  }
+
+  MountPose read_mount(Words& words) {
+    MountPose mount;
+    for (double* field :
+         {&mount.x_m, &mount.y_m, &mount.z_m, &mount.yaw_rad, &mount.pitch_rad, &mount.roll_rad}) {
+      *field = read_finite(words, lines_, "a field of the laser's mount");
+    }
+    return mount;
+  }
+
+  void read_flaser(Words& words) {
+    SubScan scan;
+    scan.ranges_m = read_ranges(words, lines_);
+    set_flaser_angles(scan);
+    scan.sensor_label = "FLASER";
+    add(std::move(scan), read_timestamp(words, kFlaserPoseWords));
+  }
+
+  void set_flaser_angles(SubScan& scan) {
+    const std::size_t num_beams = scan.ranges_m.size();
+    if (options_.fov_rad > 0.0) {
+      if (num_beams < 2) throw lines_.error("one reading has no field of view, expected two or more");
+      scan.first_angle_rad = -options_.fov_rad / 2;
+      scan.angle_step_rad = options_.fov_rad / static_cast<double>(num_beams - 1);
+      return;
+    }
+    const std::optional<double> step_rad = flaser_step_rad(num_beams);
+    if (!step_rad) {
+      throw lines_.error("a FLASER with " + std::to_string(num_beams) +
+                         " readings has no convention for its angles (180, 181, 360 and 361 have); give --fov-deg");
+    }
+    scan.first_angle_rad = kFlaserFirstAngle_rad;
+    scan.angle_step_rad = *step_rad;
+  }
+
+  void read_robot_laser(Words& words) {
+    SubScan scan;
+    words.skip(1);  // laser type
+    scan.first_angle_rad = read_finite(words, lines_, "the start angle");
+    const double fov_rad = read_finite(words, lines_, "the field of view");
+    scan.angle_step_rad = read_finite(words, lines_, "the angular resolution");
+    scan.max_range_m = std::max(0.0, read_finite(words, lines_, "the maximum range"));
+    words.skip(2);  // accuracy, remission mode
+    scan.ranges_m = read_ranges(words, lines_);
+    scan.sensor_label = "ROBOTLASER1";
+
+    const double num_steps = static_cast<double>(scan.ranges_m.size()) - 1.0;
+    if (scan.angle_step_rad == 0.0 && num_steps > 0.0) scan.angle_step_rad = fov_rad / num_steps;
+    if (scan.angle_step_rad == 0.0) throw lines_.error("the angular resolution and the field of view are 0");
+    const double excess_rad = std::abs(scan.angle_step_rad) * num_steps - std::abs(fov_rad);
+    if (fov_rad != 0.0 && std::abs(excess_rad) > 2 * std::abs(scan.angle_step_rad)) warn_of_angles();
+
+    skip_remissions(words);
+    add(std::move(scan), read_timestamp(words, kRobotLaserPoseWords));
+  }
+
+  void warn_of_angles() {
+    if (!warned_of_angles_) {
+      log_.warnings.push_back(lines_.where() + ": field of view and angular resolution contradict each other; the "
+                              "resolution is used");
+    }
+    warned_of_angles_ = true;
+  }
+
+  void skip_remissions(Words& words) {
+    const std::string_view word = words.next();
+    const std::optional<long long> count = parse_count(word);
+    if (word.empty()) throw lines_.error("too few values: the number of remissions is missing");
+    if (!count || *count < 0) throw lines_.error("'" + std::string(word) + "' where the number of remissions should be");
+    const auto wanted = static_cast<std::size_t>(*count);
+    if (words.skip(wanted) < wanted) {
+      throw lines_.error("too few values: the line announces " + std::to_string(wanted) + " remissions");
+    }
+  }
+
+  double read_timestamp(Words& words, std::size_t num_pose_words) {
+    if (words.skip(num_pose_words) < num_pose_words) {
+      throw lines_.error("too few values: expected " + std::to_string(num_pose_words) +
+                         " pose fields and a timestamp after the readings");
+    }
+    return read_finite(words, lines_, "the timestamp");
+  }
+
+  void add(SubScan scan, double timestamp_s) {
+    scan.robot_from_sensor = mount_;
+    mount_ = MountPose{};
+    if (!joins_previous_ || log_.positions.empty()) {
+      log_.positions.emplace_back();
+      log_.positions.back().timestamp_s = timestamp_s;
+    }
+    joins_previous_ = false;
+    log_.positions.back().sub_scans.push_back(std::move(scan));
+  }
+
+  /// A FLASER line does not say what its laser's maximum is; see find_no_return_level().
+  void limit_flaser_ranges() {
+    NoReturnLevel level;
+    for (const Position& position : log_.positions) {
+      for (const SubScan& scan : position.sub_scans) {
+        if (scan.sensor_label == "FLASER") level.add(scan.ranges_m);
+      }
+    }
+    double max_range_m = level.max_range_m();
+    if (param_max_range_m_ > 0.0) max_range_m = std::min(max_range_m, param_max_range_m_);
+    for (Position& position : log_.positions) {
+      for (SubScan& scan : position.sub_scans) {
+        if (scan.sensor_label == "FLASER") scan.max_range_m = max_range_m;
+      }
+    }
+  }
+
+  ByteSource& source_;
+  LineReader lines_;
+  const LogReadOptions& options_;
+  LaserChoice choice_;
+  Log log_;
+  double param_max_range_m_ = 0.0;
+  bool warned_of_angles_ = false;
+  MountPose mount_;              ///< of the next scan
+  bool joins_previous_ = false;  ///< the next scan is of the same position
+};
+
+}  // namespace
+
+std::optional<double> flaser_step_rad(std::size_t num_beams) {
+  if (num_beams == 180 || num_beams == 181) return 1.0 * kDegree;
+  if (num_beams == 360 || num_beams == 361) return 0.5 * kDegree;
+  return std::nullopt;
+}
+
+Log read_carmen(ByteSource& source, const LogReadOptions& options) { return CarmenReader(source, options).read(); }
+
+}  // namespace shapemap

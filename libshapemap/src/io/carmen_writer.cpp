@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// FLASER where its convention says all there is to say of a log's scans, else ROBOTLASER1. CARMEN lines hold one scan
+// and no mount; both are kept in remarks that other programs skip and read_carmen() understands:
+//   # shapemap same-position                      the next scan is a sub-scan of the previous scan's position
+//   # shapemap mount X Y Z YAW PITCH ROLL         of the next scan's laser, metres and radians, turn included
+// The laser pose fields of ROBOTLASER1 say the planar part of the mount to other programs.
+#include <cmath>
+
+#include "carmen.hpp"
+#include "log_formats.hpp"
+#include "mount_pose.hpp"
+#include "shapemap/scan/returns.hpp"
+#include "text.hpp"
+
+namespace shapemap {
+namespace {
+
+constexpr const char* kHeader = "# CARMEN log written by shapemap; poses are estimates, zero where there are none\n";
+
+bool fits_flaser(const SubScan& scan) {
+  const std::optional<double> step_rad = flaser_step_rad(scan.ranges_m.size());
+  return step_rad && std::abs(scan.angle_step_rad - *step_rad) < 1e-9 &&
+         std::abs(scan.first_angle_rad - kFlaserFirstAngle_rad) < 1e-9 &&
+         mount_with_heading(scan) == MountPose{};
+}
+
+/// The maximum range of all scans when FLASER lines can hold the log; nothing when they cannot. One kind of line for
+/// the whole log, since readers take two kinds for two lasers.
+std::optional<double> flaser_max_range_m(const Log& log) {
+  std::optional<double> max_range_m;
+  for (const Position& position : log.positions) {
+    if (position.sub_scans.size() != 1 || !fits_flaser(position.sub_scans.front())) return std::nullopt;
+    const double scan_max_m = position.sub_scans.front().max_range_m;
+    if (scan_max_m <= 0.0 || (max_range_m && *max_range_m != scan_max_m)) return std::nullopt;
+    max_range_m = scan_max_m;
+  }
+  return max_range_m && *max_range_m <= kLongestFlaserRange_m ? max_range_m : std::nullopt;
+}
+
+class CarmenText {
+ public:
+  CarmenText& operator<<(std::string_view word) {
+    text_ += word;
+    return *this;
+  }
+  CarmenText& operator<<(double value) {
+    text_ += ' ';
+    append_number(text_, value);
+    return *this;
+  }
+  CarmenText& operator<<(std::size_t value) {
+    text_ += ' ';
+    append_number(text_, value);
+    return *this;
+  }
+  CarmenText& operator<<(const Pose2& pose) { return *this << pose.x_m << pose.y_m << pose.theta_rad; }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+/// Every reading that is a hit by the scan's own limits, 0 for the others: CARMEN knows no minimum and no flags.
+void write_ranges(const SubScan& scan, CarmenText& line) {
+  const RangeLimits limits = range_limits(scan, ReturnOptions{});
+  line << scan.ranges_m.size();
+  std::string text;
+  for (const float range_m : scan.ranges_m) {
+    text += ' ';
+    if (is_return(range_m, limits)) {
+      append_number(text, range_m);
+    } else {
+      append_number(text, scan.max_range_m > 0.0 ? static_cast<float>(scan.max_range_m) : 0.0F);
+    }
+  }
+  line << text;
+}
+
+void write_time(double timestamp_s, CarmenText& line) { line << timestamp_s << " shapemap" << timestamp_s << "\n"; }
+
+void write_flaser(const SubScan& scan, const Pose2& map_from_robot, double timestamp_s, CarmenText& line) {
+  line << "FLASER";
+  write_ranges(scan, line);
+  line << map_from_robot << map_from_robot;
+  write_time(timestamp_s, line);
+}
+
+void write_robot_laser(const SubScan& clockwise_or_not, const Pose2& map_from_robot, double timestamp_s,
+                       CarmenText& line) {
+  const SubScan scan = counterclockwise(clockwise_or_not);
+  const MountPose mount = mount_with_heading(scan);
+  if (!(mount == MountPose{})) {
+    line << "# shapemap mount" << mount.x_m << mount.y_m << mount.z_m << mount.yaw_rad << mount.pitch_rad
+         << mount.roll_rad << "\n";
+  }
+  const double num_steps = static_cast<double>(scan.ranges_m.size()) - 1.0;
+  line << "ROBOTLASER1 0" << scan.first_angle_rad << scan.angle_step_rad * num_steps << scan.angle_step_rad
+       << scan.max_range_m << " 0 0";
+  write_ranges(scan, line);
+  line << " 0" << map_from_robot * robot_from_sensor2(scan) << map_from_robot << " 0 0 0 0 0";
+  write_time(timestamp_s, line);
+}
+
+}  // namespace
+
+void write_carmen(const Log& log, const LogPoses* poses, ByteSink& sink) {
+  sink.write(kHeader);
+  const std::optional<double> flaser_max_m = flaser_max_range_m(log);
+  if (flaser_max_m) {
+    CarmenText line;
+    line << "PARAM robot_front_laser_max" << *flaser_max_m << " shapemap 0\n";
+    sink.write(line.text());
+  }
+  for (std::size_t i = 0; i < log.positions.size(); ++i) {
+    const Position& position = log.positions[i];
+    const Pose2 map_from_robot = poses != nullptr ? poses->map_from_robot[i] : Pose2{};
+    bool is_first = true;
+    for (const SubScan& scan : position.sub_scans) {
+      CarmenText line;
+      if (!is_first) line << "# shapemap same-position\n";
+      is_first = false;
+      if (flaser_max_m) {
+        write_flaser(scan, map_from_robot, position.timestamp_s, line);
+      } else {
+        write_robot_laser(scan, map_from_robot, position.timestamp_s, line);
+      }
+      sink.write(line.text());
+    }
+  }
+}
+
+}  // namespace shapemap

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/io/log_file.hpp"
+
+#include "log_formats.hpp"
+#include "shapemap/core/errors.hpp"
+
+namespace shapemap {
+namespace {
+
+bool ends_with(const std::string& text, const std::string& ending) {
+  return text.size() >= ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+std::string quoted(const std::string& label) { return "'" + label + "'"; }
+
+}  // namespace
+
+bool LaserChoice::takes(const std::string& label, bool only_first) {
+  if (!has_first_) first_ = label;
+  has_first_ = true;
+  const bool taken = wanted_.empty() ? (!only_first || label == first_) : label == wanted_;
+  if (!taken) ++left_out_[label];
+  return taken;
+}
+
+void LaserChoice::report(const std::string& path, Log& log) const {
+  std::string others;
+  for (const auto& [label, count] : left_out_) {
+    others += (others.empty() ? "" : ", ") + quoted(label) + " (" + std::to_string(count) + " scans)";
+  }
+  if (log.positions.empty() && !others.empty()) {
+    throw InputError(path + ": no scans of a laser called " + quoted(wanted_) + "; the log has " + others);
+  }
+  if (wanted_.empty() && !others.empty()) {
+    log.warnings.push_back(path + ": only laser " + quoted(first_) + " is used; --sensor-label picks another: " + others);
+  }
+}
+
+void finish_log(const ByteSource& source, Log& log) {
+  if (log.positions.empty()) {
+    if (!source.cut().empty()) throw InputError(source.path() + ": " + source.cut() + ", no whole scan before that");
+    throw InputError(source.path() + ": no 2D laser scans in it");
+  }
+  if (!source.cut().empty()) {
+    log.warnings.push_back(source.path() + ": " + source.cut() + "; the " + std::to_string(log.positions.size()) +
+                           " positions before that are used");
+  }
+}
+
+Log read_log(const std::string& path, LogFormat format, const LogReadOptions& options) {
+  validate(options);
+  ByteSource source(path);
+  switch (format == LogFormat::kAuto ? recognise_log_format(source) : format) {
+    case LogFormat::kRawlog: return read_rawlog(source, options);
+    case LogFormat::kCarmen: return read_carmen(source, options);
+    case LogFormat::kNist: return read_nist(source, options);
+    case LogFormat::kAuto: break;
+  }
+  throw InputError(path + ": unknown log format");
+}
+
+void write_log(const Log& log, const std::string& path, LogFormat format, const LogPoses* poses) {
+  if (format == LogFormat::kAuto) throw OutputError(path + ": a format to write must be named: rawlog, carmen or nist");
+  if (poses != nullptr && poses->map_from_robot.size() != log.positions.size()) {
+    throw OutputError(path + ": " + std::to_string(poses->map_from_robot.size()) + " poses for " +
+                      std::to_string(log.positions.size()) + " positions");
+  }
+  // MRPT's own tools always compress their .rawlog files; they read nothing else without asking.
+  const bool compress = format == LogFormat::kRawlog || ends_with(path, ".gz");
+  ByteSink sink(path, compress ? ByteSink::Compression::kGzip : ByteSink::Compression::kNone);
+  if (format == LogFormat::kRawlog) write_rawlog(log, poses, sink);
+  if (format == LogFormat::kCarmen) write_carmen(log, poses, sink);
+  if (format == LogFormat::kNist) write_nist(log, sink);
+  sink.commit();
+}
+
+}  // namespace shapemap

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "byte_sink.hpp"
+#include "byte_source.hpp"
+#include "shapemap/io/log_file.hpp"
+
+/// One reader and one writer per format, and what they share.
+namespace shapemap {
+
+Log read_rawlog(ByteSource& source, const LogReadOptions& options);
+Log read_carmen(ByteSource& source, const LogReadOptions& options);
+Log read_nist(ByteSource& source, const LogReadOptions& options);
+
+void write_rawlog(const Log& log, const LogPoses* poses, ByteSink& sink);
+void write_carmen(const Log& log, const LogPoses* poses, ByteSink& sink);
+void write_nist(const Log& log, ByteSink& sink);
+
+/// The format of what `source` holds, without consuming it. Throws InputError when nothing fits.
+LogFormat recognise_log_format(ByteSource& source);
+bool looks_like_rawlog(std::string_view content);
+
+/// Which lasers of a log are used, and what is said about the others.
+class LaserChoice {
+ public:
+  explicit LaserChoice(std::string wanted_label) : wanted_(std::move(wanted_label)) {}
+  /// Notes a scan of `label`; whether it is to be used. With `only_first` and no wish of the user, the laser that
+  /// comes first is the one.
+  bool takes(const std::string& label, bool only_first);
+  /// Throws InputError when the wanted laser is not there; warns of lasers that were left out.
+  void report(const std::string& path, Log& log) const;
+
+ private:
+  std::string wanted_;
+  std::string first_;
+  bool has_first_ = false;
+  std::map<std::string, std::size_t> left_out_;
+};
+
+/// Throws InputError when `log` has no positions, else warns of a cut gzip stream.
+void finish_log(const ByteSource& source, Log& log);
+
+}  // namespace shapemap

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+
+#include "shapemap/io/log_file.hpp"
+#include "shapemap/scan/returns.hpp"
+
+namespace shapemap {
+namespace {
+
+struct Count {
+  std::size_t num_readings = 0;
+  std::size_t num_returns = 0;
+};
+
+LogSummary::Sensor first_seen(const SubScan& scan) {
+  LogSummary::Sensor sensor;
+  sensor.label = scan.sensor_label;
+  sensor.num_beams = scan.ranges_m.size();
+  if (sensor.num_beams > 0) sensor.fov_rad = std::abs(scan.angle_step_rad) * static_cast<double>(sensor.num_beams - 1);
+  sensor.max_range_m = scan.max_range_m;
+  return sensor;
+}
+
+void add(const SubScan& scan, LogSummary::Sensor& sensor, Count& count) {
+  ++sensor.num_sub_scans;
+  const RangeLimits limits = range_limits(scan, ReturnOptions{});
+  for (const float range_m : scan.ranges_m) {
+    ++count.num_readings;
+    if (!is_return(range_m, limits)) continue;
+    const double hit_m = range_m;
+    sensor.shortest_return_m = count.num_returns > 0 ? std::min(sensor.shortest_return_m, hit_m) : hit_m;
+    sensor.longest_return_m = std::max(sensor.longest_return_m, hit_m);
+    ++count.num_returns;
+  }
+}
+
+}  // namespace
+
+LogSummary summarise(const Log& log) {
+  LogSummary summary;
+  summary.format = log.format;
+  summary.num_positions = log.positions.size();
+  if (!log.positions.empty()) {
+    const auto [first, last] =
+        std::minmax_element(log.positions.begin(), log.positions.end(),
+                            [](const Position& a, const Position& b) { return a.timestamp_s < b.timestamp_s; });
+    summary.duration_s = last->timestamp_s - first->timestamp_s;
+  }
+  std::vector<Count> counts;
+  for (const Position& position : log.positions) {
+    for (const SubScan& scan : position.sub_scans) {
+      const auto known = std::find_if(summary.sensors.begin(), summary.sensors.end(),
+                                      [&](const auto& sensor) { return sensor.label == scan.sensor_label; });
+      const auto index = static_cast<std::size_t>(known - summary.sensors.begin());
+      if (known == summary.sensors.end()) {
+        summary.sensors.push_back(first_seen(scan));
+        counts.emplace_back();
+      }
+      add(scan, summary.sensors[index], counts[index]);
+    }
+  }
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i].num_readings == 0) continue;
+    summary.sensors[i].return_ratio =
+        static_cast<double>(counts[i].num_returns) / static_cast<double>(counts[i].num_readings);
+  }
+  return summary;
+}
+
+}  // namespace shapemap

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "shapemap/scan/scan.hpp"
+
+namespace shapemap {
+
+/// The mount seen from the position's first heading: the sub-scan's nominal turn becomes part of it.
+MountPose mount_with_heading(const SubScan& scan);
+
+inline bool operator==(const MountPose& a, const MountPose& b) {
+  return a.x_m == b.x_m && a.y_m == b.y_m && a.z_m == b.z_m && a.yaw_rad == b.yaw_rad && a.pitch_rad == b.pitch_rad &&
+         a.roll_rad == b.roll_rad;
+}
+
+/// The same readings from right to left, as formats without a scan direction want them.
+SubScan counterclockwise(SubScan scan);
+
+}  // namespace shapemap

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <charconv>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "byte_source.hpp"
+#include "shapemap/core/errors.hpp"
+
+/// Lines, words and numbers; the same in every locale.
+namespace shapemap {
+
+/// The lines of a text, with Unix or DOS line ends. What a cut gzip stream leaves of its last line is not given out.
+class LineReader {
+ public:
+  explicit LineReader(ByteSource& source) : source_(source) {}
+  /// The next line, valid until the next call; nothing at the end. Throws InputError on a line over 64 MiB.
+  std::optional<std::string_view> next();
+  /// For a fault in the latest line: "path:line: what".
+  InputError error(const std::string& what) const;
+  std::string where() const;
+
+ private:
+  ByteSource& source_;
+  std::size_t line_number_ = 0;
+  std::size_t pending_ = 0;  ///< bytes of the latest line, still in the window
+};
+
+/// The words of a line, separated by blanks and, if asked for, by another character.
+class Words {
+ public:
+  explicit Words(std::string_view text, char also_separates = ' ') : rest_(text), separator_(also_separates) {}
+  /// The next word; empty at the end.
+  std::string_view next();
+  /// Steps over `count` words without looking at them; how many there were.
+  std::size_t skip(std::size_t count);
+  std::size_t count_left() const;
+
+ private:
+  bool separates(char c) const;
+
+  std::string_view rest_;
+  char separator_;
+};
+
+/// The number that is the whole of `word`. Too large to hold is infinite; `nan` and `inf` are numbers.
+std::optional<double> parse_number(std::string_view word);
+std::optional<long long> parse_count(std::string_view word);
+
+/// A reading as a text log gives it; what cannot be a distance (`-`, negative, nan, inf) becomes NaN. Nothing when
+/// the word is no reading at all.
+std::optional<float> parse_range(std::string_view word, double metres_per_unit);
+
+/// The shortest decimal text that reads back as the same value.
+template <class Number>
+void append_number(std::string& text, Number value) {
+  char buffer[64];
+  const std::to_chars_result end = std::to_chars(buffer, buffer + sizeof buffer, value);
+  text.append(buffer, end.ptr);
+}
+
+}  // namespace shapemap

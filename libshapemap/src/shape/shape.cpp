@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/shape/shape.hpp"
+
+#include <algorithm>
+
+namespace shapemap {
+namespace {
+
+/// Points every `spacing_m` of arc length, the first half a spacing from the start; a short segment gives its middle.
+void resample(const LineSegment& segment, int sub_scan, double spacing_m, std::vector<ShapePoint>& points) {
+  const double length_m = segment.length_m();
+  const auto count = std::max(1L, std::lround(length_m / spacing_m));
+  const Point2 step = (segment.end_m - segment.start_m) / static_cast<double>(count);
+  const double tangent_rad = segment.tangent_rad();
+  for (long k = 0; k < count; ++k) {
+    points.push_back({segment.start_m + (static_cast<double>(k) + 0.5) * step, tangent_rad, sub_scan});
+  }
+}
+
+}  // namespace
+
+SubScanShape sub_scan_shape(const SubScan& sub_scan, int sub_scan_index, const ReturnOptions& returns,
+                            const PolylineOptions& polylines, const ShapeOptions& options) {
+  SubScanShape shape;
+  for (const Return& r : returns_in_robot(sub_scan, returns)) {
+    shape.scan_points.push_back({r.p_in_robot_m, r.range_m * std::abs(sub_scan.angle_step_rad)});
+  }
+  shape.polylines = fit_polylines(shape.scan_points, polylines);
+  if (options.points == ShapePoints::kResampled) {
+    for (const LineSegment& segment : shape.polylines.segments) {
+      resample(segment, sub_scan_index, options.spacing_m, shape.shape_points);
+    }
+    return shape;
+  }
+  for (std::size_t i = 0; i < shape.scan_points.size(); ++i) {
+    const int closest = shape.polylines.closest_segment[i];
+    if (closest < 0) continue;
+    const double tangent_rad = shape.polylines.segments[static_cast<std::size_t>(closest)].tangent_rad();
+    shape.shape_points.push_back({shape.scan_points[i].p_m, tangent_rad, sub_scan_index});
+  }
+  return shape;
+}
+
+Shape shape_of(const Position& position, const ReturnOptions& returns, const PolylineOptions& polylines,
+               const ShapeOptions& options) {
+  Shape shape;
+  shape.num_sub_scans = static_cast<int>(position.sub_scans.size());
+  for (int s = 0; s < shape.num_sub_scans; ++s) {
+    const auto part = sub_scan_shape(position.sub_scans[static_cast<std::size_t>(s)], s, returns, polylines, options);
+    shape.points.insert(shape.points.end(), part.shape_points.begin(), part.shape_points.end());
+  }
+  return shape;
+}
+
+Shape moved(const Shape& shape, const Pose2& b_from_a, const std::vector<Pose2>& sub_scan_poses) {
+  Shape result = shape;
+  for (ShapePoint& point : result.points) {
+    const bool corrected = !sub_scan_poses.empty();
+    const Pose2 pose = corrected ? b_from_a * sub_scan_poses[static_cast<std::size_t>(point.sub_scan)] : b_from_a;
+    point.p_m = pose * point.p_m;
+    point.tangent_rad = wrap_angle(point.tangent_rad + pose.theta_rad);
+  }
+  return result;
+}
+
+}  // namespace shapemap

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a run writes, and that it comes whole or not at all."""
+import json
+import math
+import os
+import resource
+import signal
+import subprocess
+
+import pytest
+import synthetic_log
+
+
+def read_tum(text):
+    rows = [[float(v) for v in line.split()] for line in text.splitlines() if not line.startswith("#")]
+    return {row[0]: (row[1], row[2], 2 * math.atan2(row[6], row[7])) for row in rows}
+
+
+def relative(a, b):
+    c, s = math.cos(a[2]), math.sin(a[2])
+    dx, dy = b[0] - a[0], b[1] - a[1]
+    return c * dx + s * dy, -s * dx + c * dy, math.remainder(b[2] - a[2], 2 * math.pi)
+
+
+def carmen_poses(text):
+    rows = [line.split() for line in text.splitlines() if line.startswith("FLASER")]
+    return [tuple(float(v) for v in row[2 + int(row[1]) : 5 + int(row[1])]) for row in rows]
+
+
+def test_a_run_maps_the_room_and_writes_all_that_is_asked_for(run, room_log, tmp_path):
+    result = run(
+        *["--carmen", "room.log", "--out", "map.png", "--trajectory", "map.tum", "--report", "report.json"],
+        *["--carmen-out", "out.log", "--rawlog-out", "out.rawlog.gz", "--draw-path"],
+    )
+    assert result.returncode == 0, result.stderr
+    assert result.stdout == ""
+    assert "placed 12 of 12 positions (1 fragment)" in result.stderr and "map.png" in result.stderr
+    poses = read_tum((tmp_path / "map.tum").read_text())
+    truth = synthetic_log.path(12)
+    assert list(poses) == [1.0 + i for i in range(12)]
+    for i in range(1, 12):
+        expected, found = relative(truth[0], truth[i]), relative(poses[1.0], poses[1.0 + i])
+        assert math.hypot(expected[0] - found[0], expected[1] - found[1]) < 0.1
+        assert abs(expected[2] - found[2]) < math.radians(2)
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert report["num_placed"] == 12 and len(report["positions"]) == 12
+    for i, (x, y, theta) in enumerate(carmen_poses((tmp_path / "out.log").read_text())):
+        pose = report["positions"][i]["map_from_robot"]
+        assert abs(x - pose["x_m"]) < 1e-5 and abs(y - pose["y_m"]) < 1e-5
+        assert abs(math.degrees(theta) - pose["theta_deg"]) < 1e-3
+    assert "image: \"map.png\"" in (tmp_path / "map.yaml").read_text()
+    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
+    assert (tmp_path / "out.rawlog.gz").read_bytes().startswith(b"\x1f\x8b")
+
+
+def test_the_written_logs_map_again(run, room_log, tmp_path):
+    for ending, flag in (("log", "--carmen-out"), ("rawlog", "--rawlog-out")):
+        assert run("room.log", "--out", f"{ending}.png", flag, f"out.{ending}").returncode == 0
+        again = run(f"out.{ending}", "--out", f"{ending}-again.png", "--trajectory", "-")
+        assert again.returncode == 0, again.stderr
+        assert len(read_tum(again.stdout)) == 12
+
+
+def test_unplaced_positions_are_listed_and_left_out(run, tmp_path):
+    lines = [synthetic_log.flaser(synthetic_log.scan(pose), 1.0 + i) for i, pose in enumerate(synthetic_log.path(8))]
+    lines[3:3] = [synthetic_log.flaser([81.83] * 181, 100.0 + i) for i in range(25)]
+    (tmp_path / "gap.log").write_text("".join(lines))
+    result = run("gap.log", "--out", "map.png", "--trajectory", "-", "--report", "r.json", "--carmen-out", "out.log")
+    assert result.returncode == 4, result.stderr
+    listed = [line for line in result.stderr.splitlines() if "not placed" in line]
+    report = json.loads((tmp_path / "r.json").read_text())
+    assert report["num_placed"] == 5 and report["num_positions"] == 33
+    assert len(listed) == 20
+    assert "... and 8 more, see --report" in result.stderr
+    assert len(result.stdout.splitlines()) == 5
+    assert (tmp_path / "out.log").read_text().count("FLASER") == 5
+    assert all(p["reason"] for p in report["positions"][3:28])
+    assert "not placed" not in run("gap.log", "--out", "quiet.png", "--quiet").stderr
+    verbose = run("gap.log", "--out", "verbose.png", "--verbose").stderr
+    assert verbose.count("not placed") == 28
+
+
+def test_selection_keeps_count_in_the_whole_log(run, room_log, tmp_path):
+    result = run("room.log", "--out", "m.png", "--skip", 2, "--every", 2, "--first", 3, "--report", "r.json")
+    assert result.returncode in (0, 4), result.stderr
+    report = json.loads((tmp_path / "r.json").read_text())
+    assert [p["index_in_whole_log"] for p in report["positions"]] == [2, 4, 6]
+    assert [p["timestamp_s"] for p in report["positions"]] == [3.0, 5.0, 7.0]
+
+
+def test_a_pipe_gets_no_progress_bar_and_quiet_means_silence(run, room_log):
+    result = run("room.log", "--out", "a.png")
+    assert "\r" not in result.stderr and "\033" not in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+    result = run("room.log", "--out", "b.png", "--quiet")
+    assert result.returncode == 0 and result.stderr == "" and result.stdout == ""
+
+
+def test_a_terminal_gets_a_progress_bar(cli_path, room_log, tmp_path):
+    main, terminal = os.openpty()
+    process = subprocess.Popen([cli_path, "room.log", "--out", "map.png"], cwd=tmp_path, stderr=terminal)
+    os.close(terminal)
+    seen = b""
+    while True:
+        try:
+            chunk = os.read(main, 4096)
+        except OSError:  # the other end is closed
+            break
+        if not chunk:
+            break
+        seen += chunk
+    os.close(main)
+    assert process.wait(60) == 0
+    assert b"12/12" in seen and b"positions/s" in seen and b"ETA" in seen
+
+
+def test_existing_outputs_stay_without_force(fails, run, room_log, tmp_path):
+    for name in ("map.png", "map.yaml", "map.tum"):
+        (tmp_path / name).write_text("mine")
+        fails(5, "room.log", "--out", "map.png", "--trajectory", "map.tum", says=[name, "--force"])
+        assert (tmp_path / name).read_text() == "mine"
+        (tmp_path / name).unlink()
+    (tmp_path / "map.png").write_text("mine")
+    assert run("room.log", "--out", "map.png", "--force").returncode == 0
+    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_convert_needs_force_too(fails, run, room_log, tmp_path):
+    (tmp_path / "room.nist").write_text("mine")
+    fails(5, "convert", "room.log", "room.nist", says="--force")
+    assert run("convert", "room.log", "room.nist", "--force").returncode == 0
+    assert (tmp_path / "room.nist").read_text() != "mine"
+
+
+@pytest.mark.parametrize(
+    "outputs",
+    [
+        ["--out", "missing/map.png"],
+        ["--out", "map.png", "--trajectory", "missing/map.tum"],
+        ["--out", "map.png", "--report", "room.log/report.json"],
+        ["--out", "map.png", "--trajectory", "folder"],
+        ["--out", "/proc/map.png"],
+        ["--out", "map.png", "--trajectory", "/dev/full"],
+        ["--out", "map.png", "--report", "/dev/full"],
+        ["--out", "map.png", "--carmen-out", "/dev/full"],
+    ],
+)
+def test_what_cannot_be_written_leaves_nothing(fails, room_log, tmp_path, outputs):
+    (tmp_path / "folder").mkdir()
+    fails(5, "room.log", *outputs)
+
+
+def test_a_map_that_is_too_large_says_what_helps(fails, tmp_path):
+    scan = [30.0 + 0.1 * r for r in synthetic_log.scan(synthetic_log.path(1)[0])]
+    (tmp_path / "far.log").write_text(synthetic_log.flaser(scan, 1.0))
+    fails(5, "far.log", "--out", "map.png", "--resolution-m", "0.001", says="--resolution-m")
+
+
+@pytest.mark.parametrize("limit", [0, 100, 1000, 3000])
+def test_a_full_disk_leaves_nothing(fails, room_log, limit):
+    """A limit on file size meets every write where a full disk would."""
+
+    def set_limit():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+    message = fails(
+        *[5, "room.log", "--out", "map.png", "--trajectory", "map.tum", "--report", "report.json"],
+        *["--rawlog-out", "out.rawlog", "--carmen-out", "out.log"],
+        preexec_fn=set_limit,
+    )
+    assert "/." not in message, "the message names the file that was asked for, not a temporary one"
+
+
+def test_a_full_file_system_leaves_nothing(fails, run, room_log, tmp_path):
+    folder = tmp_path / "small"
+    folder.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16k", "none", str(folder)], capture_output=True)
+    if mounted.returncode != 0:
+        pytest.skip("cannot mount a small file system (that takes root); the file size limit is tested instead")
+    try:
+        fails(5, "room.log", "--out", "map.png", "--rawlog-out", "small/out.rawlog", says="small/out.rawlog")
+    finally:
+        subprocess.run(["umount", str(folder)], check=True)
+
+
+def test_a_closed_pipe_is_an_output_that_cannot_be_written(cli_path, room_log, tmp_path):
+    read_end, write_end = os.pipe()
+    os.close(read_end)
+    arguments = [cli_path, "room.log", "--out", "map.png", "--trajectory", "-"]
+    result = subprocess.run(arguments, cwd=tmp_path, stdout=write_end, stderr=subprocess.PIPE, text=True, timeout=60)
+    os.close(write_end)
+    assert result.returncode == 5, result.stderr
+    assert not (tmp_path / "map.png").exists()

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "shapemap/core/errors.hpp"
+#include "shapemap/io/log_file.hpp"
+#include "shapemap/scan/returns.hpp"
+
+namespace shapemap::test {
+
+/// What reading `path` says that is wrong with it; "" when it can be read.
+inline std::string input_error(const std::string& path, LogFormat format = LogFormat::kAuto,
+                               const LogReadOptions& options = {}) {
+  try {
+    read_log(path, format, options);
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+/// A scan whose readings are all different, with two that hit nothing.
+inline SubScan make_scan(std::size_t num_beams, double first_angle_rad, double angle_step_rad) {
+  SubScan scan;
+  scan.first_angle_rad = first_angle_rad;
+  scan.angle_step_rad = angle_step_rad;
+  scan.max_range_m = 20.0;
+  scan.sensor_label = "laser";
+  for (std::size_t i = 0; i < num_beams; ++i) scan.ranges_m.push_back(1.0F + 0.01F * static_cast<float>(i));
+  scan.ranges_m[1] = std::numeric_limits<float>::quiet_NaN();
+  scan.ranges_m[num_beams - 2] = 20.0F;
+  return scan;
+}
+
+/// Expects the same positions, times and points in the robot's frame.
+inline void expect_same_points(const Log& a, const Log& b, double tolerance_m) {
+  ASSERT_EQ(a.positions.size(), b.positions.size());
+  for (std::size_t i = 0; i < a.positions.size(); ++i) {
+    SCOPED_TRACE("position " + std::to_string(i));
+    const Position& p = a.positions[i];
+    const Position& q = b.positions[i];
+    // MRPT counts time in units of 100 ns.
+    ASSERT_NEAR(p.timestamp_s, q.timestamp_s, 2e-7 + 1e-15 * std::abs(p.timestamp_s));
+    ASSERT_EQ(p.sub_scans.size(), q.sub_scans.size());
+    for (std::size_t s = 0; s < p.sub_scans.size(); ++s) {
+      const std::vector<Return> from_a = returns_in_robot(p.sub_scans[s], {});
+      const std::vector<Return> from_b = returns_in_robot(q.sub_scans[s], {});
+      ASSERT_EQ(from_a.size(), from_b.size());
+      double worst_m = 0.0;
+      for (std::size_t r = 0; r < from_a.size(); ++r) {
+        worst_m = std::max(worst_m, (from_a[r].p_in_robot_m - from_b[r].p_in_robot_m).norm());
+      }
+      ASSERT_LT(worst_m, tolerance_m);
+    }
+  }
+}
+
+}  // namespace shapemap::test

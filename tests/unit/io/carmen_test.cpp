@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/logs.hpp"
+#include "support/temp_folder.hpp"
+
+namespace shapemap {
+namespace {
+
+using test::input_error;
+using test::TempFolder;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::string readings(int count, const std::string& reading = "1.5") {
+  std::string text = std::to_string(count);
+  for (int i = 0; i < count; ++i) text += " " + reading;
+  return text;
+}
+
+/// Only the readings, each with a blank in front.
+std::string times(int count, const std::string& reading) {
+  const std::string text = readings(count, reading);
+  return text.substr(text.find(' '));
+}
+
+std::string flaser(int count, const std::string& reading = "1.5", const std::string& timestamp = "12.25") {
+  return "FLASER " + readings(count, reading) + " 0 0 0 0 0 0 " + timestamp + " host 99\n";
+}
+
+class Carmen : public testing::Test {
+ protected:
+  Log read(const std::string& content, const LogReadOptions& options = {}) {
+    return read_log(folder_.write("a.log", content), LogFormat::kAuto, options);
+  }
+  std::string error(const std::string& content, const LogReadOptions& options = {}) {
+    return input_error(folder_.write("a.log", content), LogFormat::kAuto, options);
+  }
+  TempFolder folder_;
+};
+
+TEST_F(Carmen, FlaserAnglesFollowFromTheCount) {
+  const std::array<std::tuple<int, double>, 4> conventions{{{180, 1.0}, {181, 1.0}, {360, 0.5}, {361, 0.5}}};
+  for (const auto& [count, step_deg] : conventions) {
+    const Log log = read(flaser(count));
+    ASSERT_EQ(log.format, "carmen");
+    ASSERT_EQ(log.positions.size(), 1U);
+    EXPECT_EQ(log.positions[0].timestamp_s, 12.25);
+    ASSERT_EQ(log.positions[0].sub_scans.size(), 1U);
+    const SubScan& scan = log.positions[0].sub_scans[0];
+    EXPECT_EQ(scan.ranges_m.size(), static_cast<std::size_t>(count));
+    EXPECT_DOUBLE_EQ(scan.first_angle_rad, -90 * kDegree);
+    EXPECT_DOUBLE_EQ(scan.angle_step_rad, step_deg * kDegree);
+    EXPECT_EQ(scan.sensor_label, "FLASER");
+  }
+}
+
+TEST_F(Carmen, OtherCountsNeedAFieldOfView) {
+  EXPECT_THAT(error("PARAM x 1\n" + flaser(100)), testing::AllOf(HasSubstr("a.log:2:"), HasSubstr("--fov-deg")));
+  LogReadOptions options;
+  options.fov_rad = 198 * kDegree;
+  const SubScan scan = read(flaser(100), options).positions[0].sub_scans[0];
+  EXPECT_DOUBLE_EQ(scan.first_angle_rad, -99 * kDegree);
+  EXPECT_DOUBLE_EQ(scan.angle_step_rad, 2 * kDegree);
+  EXPECT_DOUBLE_EQ(read(flaser(181), options).positions[0].sub_scans[0].angle_step_rad, 1.1 * kDegree);
+}
+
+TEST_F(Carmen, RobotLaserHasItsOwnAnglesAndLimits) {
+  const SubScan scan = read("ROBOTLASER1 0 -1.0 2.0 0.5 7.5 0.1 0 5 1 2 3 7.5 8 2 10 20 l l l r r r 0 0 0 0 0 33.5 h 1\n")
+                           .positions.at(0).sub_scans.at(0);
+  EXPECT_EQ(scan.first_angle_rad, -1.0);
+  EXPECT_EQ(scan.angle_step_rad, 0.5);
+  EXPECT_EQ(scan.max_range_m, 7.5);
+  EXPECT_THAT(scan.ranges_m, ElementsAre(1.0F, 2.0F, 3.0F, 7.5F, 8.0F));
+  EXPECT_EQ(returns_in_robot(scan, {}).size(), 3U);
+}
+
+TEST_F(Carmen, PosesAreNotEvenNumbers) {
+  const Log log = read("FLASER " + readings(180) + " nan x ?? 1e999 -- # 7.5 host 1\n");
+  EXPECT_EQ(log.positions.at(0).timestamp_s, 7.5);
+}
+
+TEST_F(Carmen, OtherKeywordsAreIgnored) {
+  const Log log = read("# remark\nODOM garbage\nRLASER 5 junk\nSYNC\n\n" + flaser(180) + "TRUEPOS x\n");
+  EXPECT_EQ(log.positions.size(), 1U);
+  EXPECT_TRUE(log.warnings.empty());
+}
+
+TEST_F(Carmen, OneLaserIsUsedAndTheOthersAreNamed) {
+  const std::string robot_laser = "ROBOTLASER1 0 -1 2 1 8 0 0 3 1 2 3 0 0 0 0 0 0 0 0 0 0 0 0 5 h 1\n";
+  const Log first = read(flaser(180) + robot_laser);
+  EXPECT_EQ(first.positions.size(), 1U);
+  EXPECT_THAT(first.warnings, ElementsAre(HasSubstr("'ROBOTLASER1' (1 scans)")));
+  LogReadOptions options;
+  options.sensor_label = "ROBOTLASER1";
+  const Log second = read(flaser(180) + robot_laser, options);
+  EXPECT_EQ(second.positions.at(0).timestamp_s, 5.0);
+  EXPECT_TRUE(second.warnings.empty());
+  options.sensor_label = "none";
+  EXPECT_THAT(error(flaser(180), options), testing::AllOf(HasSubstr("'none'"), HasSubstr("'FLASER'")));
+}
+
+TEST_F(Carmen, ReadingsThatAreNoDistancesAreNoReturns) {
+  LogReadOptions options;
+  options.fov_rad = 1.0;
+  const SubScan scan = read("FLASER 6 nan inf -1 0 2 -inf 0 0 0 0 0 0 1 h 1\n", options).positions.at(0).sub_scans.at(0);
+  EXPECT_EQ(returns_in_robot(scan, {}).size(), 1U);
+  for (const std::size_t beam : {0U, 1U, 2U, 5U}) EXPECT_TRUE(std::isnan(scan.ranges_m[beam])) << beam;
+}
+
+TEST_F(Carmen, SickErrorCodesAreNoReturns) {
+  const SubScan scan = read("FLASER 180 81.91 80.5" + times(178, "1.5") + " 0 0 0 0 0 0 1 h 1\n")
+                           .positions.at(0).sub_scans.at(0);
+  EXPECT_EQ(scan.max_range_m, 81.0);
+  EXPECT_EQ(returns_in_robot(scan, {}).size(), 179U);
+}
+
+TEST_F(Carmen, ADriversRoundLimitIsNoReturnButAWallIsNot) {
+  const std::string mixed = "FLASER 180" + times(150, "3.21");
+  const std::string poses = " 0 0 0 0 0 0 1 h 1\n";
+  const Log limited = read(mixed + times(30, "50.00") + poses);
+  EXPECT_EQ(limited.positions.at(0).sub_scans.at(0).max_range_m, 50.0);
+  const Log crooked = read(mixed + times(30, "37.43") + poses);
+  EXPECT_EQ(crooked.positions.at(0).sub_scans.at(0).max_range_m, 81.0);
+  const Log wall = read(mixed + times(20, "50.00") + times(10, "49.97") + poses);
+  EXPECT_EQ(wall.positions.at(0).sub_scans.at(0).max_range_m, 81.0);
+  const Log few = read(mixed + times(22, "4") + times(8, "50.00") + poses);
+  EXPECT_EQ(few.positions.at(0).sub_scans.at(0).max_range_m, 81.0);
+  const Log small_room = read(flaser(180, "5.0"));
+  EXPECT_EQ(small_room.positions.at(0).sub_scans.at(0).max_range_m, 81.0);
+}
+
+TEST_F(Carmen, SickCodesInMillimetresAreNoReturns) {
+  const Log log = read("FLASER 180" + times(160, "3.21") + times(10, "32.763") +
+                       times(10, "32.767") + " 0 0 0 0 0 0 1 h 1\n");
+  EXPECT_FLOAT_EQ(static_cast<float>(log.positions.at(0).sub_scans.at(0).max_range_m), 32.763F);
+  EXPECT_EQ(returns_in_robot(log.positions[0].sub_scans[0], {}).size(), 160U);
+}
+
+TEST_F(Carmen, AParameterLimitsTheRange) {
+  const Log log = read("PARAM robot_front_laser_max 10.0 host 1\n" + flaser(180, "10.5"));
+  EXPECT_EQ(log.positions.at(0).sub_scans.at(0).max_range_m, 10.0);
+  EXPECT_TRUE(returns_in_robot(log.positions[0].sub_scans[0], {}).empty());
+}
+
+TEST_F(Carmen, ShortLinesAreNamed) {
+  EXPECT_THAT(error(flaser(180) + "FLASER 180 1 2 3\n"), HasSubstr("a.log:2: too few values"));
+  EXPECT_THAT(error("FLASER\n"), HasSubstr("a.log:1: '' where the number of readings"));
+  EXPECT_THAT(error("FLASER " + readings(180) + " 0 0 0\n"), HasSubstr("a.log:1: too few values"));
+  EXPECT_THAT(error("FLASER " + readings(180) + " 0 0 0 0 0 0\n"), HasSubstr("a.log:1: too few values: the timestamp"));
+  EXPECT_THAT(error(flaser(180, "1.5", "nan")), HasSubstr("a.log:1: the timestamp is 'nan'"));
+  EXPECT_THAT(error(flaser(180, "1.5x")), HasSubstr("a.log:1: reading 1 is '1.5x'"));
+  EXPECT_THAT(error("ROBOTLASER1 0 -1 2\n"), HasSubstr("a.log:1: too few values: the angular resolution"));
+}
+
+TEST_F(Carmen, ABillionBeamsAreNotBelieved) {
+  EXPECT_THAT(error("FLASER 1000000000 1 2 3\n"), HasSubstr("announces 1000000000 readings but has only 3"));
+  EXPECT_THAT(error("FLASER 99999999999999999999 1 2 3\n"), HasSubstr("a.log:1:"));
+  EXPECT_THAT(error("ROBOTLASER1 0 -1 2 1 8 0 0 3 1 2 3 1000000000 0\n"), HasSubstr("1000000000 remissions"));
+  EXPECT_THAT(error("FLASER -5 1 2 3\n"), HasSubstr("'-5' where the number of readings"));
+}
+
+TEST_F(Carmen, DosLineEndsAndALastLineWithoutEnd) {
+  std::string content = flaser(180) + flaser(180, "2.5", "13");
+  content.insert(content.size() - 1, "\r");
+  content.pop_back();
+  EXPECT_EQ(read(content).positions.size(), 2U);
+}
+
+}  // namespace
+}  // namespace shapemap

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/io/map_files.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+
+#include "shapemap/core/errors.hpp"
+
+namespace shapemap {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MapFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / (std::string("shapemap_") + test->name() + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string in_folder(const std::string& name) const { return (folder_ / name).string(); }
+
+  fs::path folder_;
+};
+
+/// A robot at (2, 1) that faces north and sees a wall 3 m ahead, 1 m to its right, and nothing to its left.
+struct World {
+  Log log;
+  std::vector<PlacedPosition> placed;
+  Point2 wall_ahead_m{2.0, 4.0};
+  Point2 wall_right_m{3.0, 1.0};
+
+  World() {
+    SubScan sub_scan;
+    sub_scan.ranges_m = {1.0F, 3.0F, NAN};
+    sub_scan.first_angle_rad = -kPi / 2;
+    sub_scan.angle_step_rad = kPi / 2;
+    log.positions.push_back({12.5, {sub_scan}, std::nullopt});
+    placed.push_back({0, 12.5, {2.0, 1.0, kPi / 2}, {Pose2{}}});
+  }
+  GridMap map() const { return build_grid_map(log, placed, ReturnOptions{}, GridMapOptions{0.07}); }
+};
+
+/// Numbers of a map.yaml in the way of ROS map_server.
+struct RosMap {
+  double resolution = 0.0;
+  double origin_x = 0.0;
+  double origin_y = 0.0;
+
+  explicit RosMap(const std::string& yaml) {
+    const char* const format = "image: \"%*[^\"]\"\nresolution: %lf\norigin: [%lf, %lf, 0]";
+    EXPECT_EQ(std::sscanf(yaml.c_str(), format, &resolution, &origin_x, &origin_y), 3) << yaml;
+  }
+  /// map_server: the origin is the lower left corner of the lower left pixel; row 0 is the top of the picture.
+  int grey_at(const cv::Mat& image, const Point2& p_m) const {
+    const int column = static_cast<int>(std::floor((p_m.x() - origin_x) / resolution));
+    const int row = image.rows - 1 - static_cast<int>(std::floor((p_m.y() - origin_y) / resolution));
+    return image.at<std::uint8_t>(row, column);
+  }
+};
+
+TEST_F(MapFiles, RosFindsTheWallsWhereTheyStand) {
+  const World world;
+  const GridMap map = world.map();
+  const RosMap ros(ros_map_yaml(map, "map.png"));
+  for (const char* name : {"map.png", "map.pgm", "map.tif", "map.PNG"}) {
+    write_map_image(map, in_folder(name), nullptr);
+    const cv::Mat image = cv::imread(in_folder(name), cv::IMREAD_UNCHANGED);
+    ASSERT_EQ(image.type(), CV_8UC1) << name;
+    ASSERT_EQ(image.cols, map.width_cells);
+    EXPECT_LT(ros.grey_at(image, world.wall_ahead_m), 0.35 * 255) << name;
+    EXPECT_LT(ros.grey_at(image, world.wall_right_m), 0.35 * 255) << name;
+    EXPECT_GT(ros.grey_at(image, {2.0, 2.5}), 0.5 * 255) << name;
+    const double unknown_occupancy = (255.0 - ros.grey_at(image, {2.5, 3.0})) / 255.0;
+    EXPECT_GT(unknown_occupancy, 0.196);
+    EXPECT_LT(unknown_occupancy, 0.65);
+  }
+}
+
+TEST_F(MapFiles, YamlSaysHowGreysAreMeant) {
+  GridMap map;
+  map.resolution_m = 0.05;
+  map.origin_m = {-12.35, 0.1 + 0.2};
+  EXPECT_EQ(ros_map_yaml(map, "a \"b\".png"),
+            "image: \"a \\\"b\\\".png\"\nresolution: 0.05\norigin: [-12.35, 0.30000000000000004, 0]\n"
+            "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\nmode: trinary\n");
+}
+
+TEST_F(MapFiles, APathIsDrawnInColourOrInGrey) {
+  const World world;
+  const GridMap map = world.map();
+  const Eigen::Vector2i robot = map.pixel_at(world.placed[0].map_from_robot.translation());
+  write_map_image(map, in_folder("map.png"), &world.placed);
+  const cv::Mat colour = cv::imread(in_folder("map.png"), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(colour.type(), CV_8UC3);
+  const cv::Vec3b start = colour.at<cv::Vec3b>(robot.y(), robot.x());
+  EXPECT_GT(start[1], start[2]) << "the first position is green";
+
+  write_map_image(map, in_folder("map.pgm"), &world.placed);
+  const cv::Mat grey = cv::imread(in_folder("map.pgm"), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(grey.type(), CV_8UC1);
+  EXPECT_NE(grey.at<std::uint8_t>(robot.y(), robot.x()), map.grey[static_cast<std::size_t>(
+                                                             robot.y() * map.width_cells + robot.x())]);
+  const Eigen::Vector2i wall = map.pixel_at(world.wall_ahead_m);
+  const std::uint8_t wall_grey = map.grey[static_cast<std::size_t>(wall.y() * map.width_cells + wall.x())];
+  EXPECT_EQ(colour.at<cv::Vec3b>(wall.y(), wall.x()), cv::Vec3b(wall_grey, wall_grey, wall_grey));
+}
+
+TEST_F(MapFiles, AnotherEndingIsRefusedAndNothingIsLeft) {
+  const GridMap map = World().map();
+  for (const char* name : {"map.jpg", "map", "map.png.gz", ".png/map"}) {
+    EXPECT_THROW(write_map_image(map, in_folder(name), nullptr), OutputError) << name;
+  }
+  EXPECT_THROW(write_map_image(map, in_folder("missing/map.png"), nullptr), OutputError);
+  EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST(TumTrajectory, HasOneLinePerPositionWithAUnitQuaternion) {
+  const std::vector<PlacedPosition> placed{{0, 1234567890.123456, {1.5, -2.25, kPi / 2}, {}}, {3, 2.0, {}, {}}};
+  std::istringstream lines(tum_trajectory(placed));
+  double t, x, y, z, qx, qy, qz, qw;
+  ASSERT_TRUE(lines >> t >> x >> y >> z >> qx >> qy >> qz >> qw);
+  EXPECT_NEAR(t, 1234567890.123456, 1e-6);
+  EXPECT_DOUBLE_EQ(x, 1.5);
+  EXPECT_DOUBLE_EQ(y, -2.25);
+  EXPECT_EQ(z, 0.0);
+  EXPECT_EQ(qx * qx + qy * qy, 0.0);
+  EXPECT_NEAR(2 * std::atan2(qz, qw), kPi / 2, 1e-11);
+  ASSERT_TRUE(lines >> t >> x >> y >> z >> qx >> qy >> qz >> qw);
+  EXPECT_EQ(qw, 1.0);
+  EXPECT_FALSE(lines >> t);
+}
+
+TEST(TumTrajectory, RefusesNumbersThatFitNoLine) {
+  EXPECT_THROW(tum_trajectory({{0, 1e300, {}, {}}}), OutputError);
+}
+
+}  // namespace
+}  // namespace shapemap

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/io/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace shapemap {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Three positions: the first two make the map, the third could not be aligned.
+class Report : public testing::Test {
+ protected:
+  Report() {
+    for (const double timestamp_s : {10.0, 11.0, 12.5}) log_.positions.push_back({timestamp_s, {SubScan{}}, {}});
+    log_.format = "carmen";
+    result_.fragments.resize(2);
+    result_.fragments[0].positions = {{0, 10.0, {}, {Pose2{}}}, {1, 11.0, {1.0, 2.0, kPi / 2}, {Pose2{}}}};
+    result_.fragments[1].positions = {{2, 12.5, {}, {Pose2{}}}};
+    result_.largest_fragment = 0;
+    result_.positions.resize(3);
+    for (std::size_t i = 0; i < 3; ++i) result_.positions[i].position_index = i;
+    result_.positions[0].fragment = 0;
+    result_.positions[0].starts_fragment = true;
+    result_.positions[1].fragment = 0;
+    result_.positions[1].alignment.status = AlignStatus::kOk;
+    result_.positions[1].alignment.ref_from_query = {1.0, 2.0, kPi / 2};
+    result_.positions[1].alignment.overlap = 77;
+    result_.positions[1].alignment.query_from_sub_scan = {Pose2{0.01, 0.0, 0.0}};
+    result_.positions[2].fragment = 1;
+    result_.positions[2].starts_fragment = true;
+    result_.positions[2].reason = "only 3 of 10";
+    result_.positions[2].alignment.status = AlignStatus::kTooFewCorrespondences;
+    result_.positions[2].alignment.ref_from_query = {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0};
+    selection_.skip = 5;
+    selection_.every = 2;
+  }
+  Json parsed() const {
+    return Json::parse(json_report(
+        {"run\xFF.log", log_, result_, mapping_, reading_, selection_, grid_, {"odd"}, {1.0, 2.0, 3.0, 6.5, 6.0, 50.0}}));
+  }
+
+  Log log_;
+  MapResult result_;
+  MappingOptions mapping_;
+  LogReadOptions reading_;
+  SelectionOptions selection_;
+  GridMapOptions grid_;
+};
+
+TEST_F(Report, TellsWhatBecameOfEachPosition) {
+  const Json report = parsed();
+  EXPECT_EQ(report["num_positions"], 3);
+  EXPECT_EQ(report["num_placed"], 2);
+  const Json& first = report["positions"][0];
+  EXPECT_TRUE(first["alignment"].is_null()) << "there was nothing to align to";
+  EXPECT_EQ(first["map_from_robot"]["x_m"], 0.0);
+  const Json& second = report["positions"][1];
+  EXPECT_EQ(second["index_in_whole_log"], 7);
+  EXPECT_EQ(second["alignment"]["status"], "ok");
+  EXPECT_DOUBLE_EQ(second["alignment"]["ref_from_query"]["theta_deg"], 90.0);
+  EXPECT_EQ(second["alignment"]["overlap"], 77);
+  EXPECT_EQ(second["alignment"]["query_from_sub_scan"][0]["x_m"], 0.01);
+  EXPECT_EQ(second["map_from_robot"]["y_m"], 2.0);
+  const Json& third = report["positions"][2];
+  EXPECT_EQ(third["alignment"]["status"], "too-few-correspondences");
+  EXPECT_EQ(third["reason"], "only 3 of 10");
+  EXPECT_TRUE(third["alignment"]["ref_from_query"].is_null());
+  EXPECT_TRUE(third["map_from_robot"].is_null());
+}
+
+TEST_F(Report, ListsFragmentsAndWhichOneIsTheMap) {
+  const Json fragments = parsed()["fragments"];
+  ASSERT_EQ(fragments.size(), 2U);
+  EXPECT_EQ(fragments[0]["num_positions"], 2);
+  EXPECT_EQ(fragments[0]["last_index"], 1);
+  EXPECT_EQ(fragments[0]["is_map"], true);
+  EXPECT_EQ(fragments[1]["first_index"], 2);
+  EXPECT_EQ(fragments[1]["is_map"], false);
+}
+
+TEST_F(Report, HoldsEveryOptionInTheUnitOfItsName) {
+  mapping_.returns.max_mount_tilt_rad = 25 * kDegree;
+  grid_.resolution_m = 0.02;
+  const Json options = parsed()["options"];
+  EXPECT_NEAR(options["max-mount-tilt-deg"].get<double>(), 25.0, 1e-12);
+  EXPECT_EQ(options["resolution-m"], 0.02);
+  EXPECT_EQ(options["method"], "paper");
+  EXPECT_EQ(options["skip"], 5);
+  MappingOptions::groups(mapping_, [&](const char* title, const auto& group) {
+    std::decay_t<decltype(group)>::fields(group, [&](const Field& field, const auto&) {
+      EXPECT_TRUE(options.contains(field.name)) << title << ": " << field.name;
+    });
+  });
+}
+
+TEST_F(Report, NamesVersionsCostsAndTheLogWhateverItsBytes) {
+  const Json report = parsed();
+  for (const char* name : {"shapemap", "MRPT", "OpenCV", "CGAL", "Eigen"}) {
+    EXPECT_NE(report["versions"][name].get<std::string>().find('.'), std::string::npos) << name;
+  }
+  EXPECT_EQ(report["seconds"]["wall"], 6.5);
+  EXPECT_EQ(report["peak_memory_mib"], 50.0);
+  EXPECT_EQ(report["warnings"][0], "odd");
+  EXPECT_EQ(report["log"]["path"], "run\xEF\xBF\xBD.log") << "bytes that are no UTF-8 are replaced";
+}
+
+}  // namespace
+}  // namespace shapemap
