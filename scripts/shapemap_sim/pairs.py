@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How well each consecutive pair of positions was aligned, from a mapper's report and the truth."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .poses import Array, compose, inverse, transform
+from .sensor import points_of
+from .simulation import Simulation
+
+STAGES = ("before ICP", "after ICP", "after decoupled ICP")
+MAX_ERROR_M = 0.30
+MAX_ERROR_DEG = 5.0
+
+
+@dataclass(frozen=True)
+class StageError:
+    """Errors of one stage of one pair. `displacement_m` is how far the points ended up from where they truly were,
+    the mean over each sub-scan's points and then over the sub-scans."""
+
+    error_m: float
+    error_deg: float
+    displacement_m: float
+
+    @property
+    def ok(self) -> bool:
+        return self.error_m <= MAX_ERROR_M and self.error_deg <= MAX_ERROR_DEG
+
+
+@dataclass(frozen=True)
+class PairResult:
+    """Position `index` against the one before it. `errors` by stage; None when the mapper did not trust its alignment
+    or gave none: `reason` then says why."""
+
+    seed: int
+    index: int
+    overlap: float
+    errors: Mapping[str, StageError] | None
+    reason: str = ""
+
+    def verdict(self, stage: str) -> str:
+        """ok, wrong (a pose beyond the limits) or rejected (no pose)."""
+        if self.errors is None:
+            return "rejected"
+        return "ok" if self.errors[stage].ok else "wrong"
+
+
+def pose_from(fields: Mapping[str, float]) -> Array:
+    """`[3]` from a report's x_m, y_m, theta_deg."""
+    return np.array([fields["x_m"], fields["y_m"], np.deg2rad(fields["theta_deg"])])
+
+
+def pose_error(estimate: Array, truth: Array) -> tuple[float, float]:
+    """Distance [m] and angle [deg] between two poses `[3]` in the same frame."""
+    difference = compose(inverse(truth), estimate)
+    return float(np.hypot(difference[0], difference[1])), float(abs(np.rad2deg(difference[2])))
+
+
+def fit_rigid(to_points: Array, from_points: Array) -> Array:
+    """The pose `[3]` that takes points `[n, 2]` to their partners `[n, 2]` with the least squared error."""
+    to_mean, from_mean = to_points.mean(axis=0), from_points.mean(axis=0)
+    a, b = from_points - from_mean, to_points - to_mean
+    theta = np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum())
+    turned = transform(np.array([0.0, 0.0, theta]), from_mean[None])[0]
+    return np.array([*(to_mean - turned), theta])
+
+
+def mean_displacement(estimates: Array, truths: Array, points: list[Array]) -> float:
+    """Mean over sub-scans of the mean distance [m] between a sub-scan's points `[n, 2]` under its estimated and under
+    its true pose (`[s, 3]` each); sub-scans without points do not count."""
+    distances = [np.hypot(*(transform(e, p) - transform(t, p)).T).mean()
+                 for e, t, p in zip(estimates, truths, points) if len(p)]
+    return float(np.mean(distances)) if distances else 0.0
+
+
+@dataclass(frozen=True)
+class PairTruth:
+    """What is known about a pair. Poses of the query's sub-scans `[s, 3]`: `ref_from_sub_scan` as they truly stood,
+    `query_from_nominal` as the log says. `points[s]` `[n, 2]` in the frame of the sub-scan."""
+
+    ref_from_query: Array
+    ref_from_sub_scan: Array
+    query_from_nominal: Array
+    points: list[Array]
+
+
+def pair_truth(simulation: Simulation, index: int) -> PairTruth:
+    """The truth about position `index` and the one before it."""
+    run, beams = simulation.drive, simulation.options.sensor.beam_angles_rad()
+    ref_from_map = inverse(run.map_from_robot[index - 1])
+    nominal = np.zeros((len(run.nominal_headings_rad), 3))
+    nominal[:, 2] = run.nominal_headings_rad
+    return PairTruth(compose(ref_from_map, run.map_from_robot[index]),
+                     compose(ref_from_map, run.map_from_sub_scan[index]), nominal,
+                     [points_of(ranges, beams) for ranges in simulation.ranges[index]])
+
+
+def stage_error(ref_from_query: Array, corrections: Array, truth: PairTruth) -> StageError:
+    """Errors of a pose `[3]` with corrections `[s, 3]` of the sub-scans. The pose that counts is the one that fits
+    the corrected points best, so that corrections all one way count as a better or worse pose."""
+    query_from_sub_scan = compose(corrections, truth.query_from_nominal)
+    estimates = compose(ref_from_query, query_from_sub_scan)
+    query = [transform(n, p) for n, p in zip(truth.query_from_nominal, truth.points)]
+    ref = [transform(e, p) for e, p in zip(estimates, truth.points)]
+    error_m, error_deg = pose_error(fit_rigid(np.concatenate(ref), np.concatenate(query)), truth.ref_from_query)
+    return StageError(error_m, error_deg, mean_displacement(estimates, truth.ref_from_sub_scan, truth.points))
+
+
+def stage_errors(alignment: Mapping[str, Any], truth: PairTruth) -> dict[str, StageError]:
+    """Errors of an alignment that the report calls ok, by stage."""
+    none = np.zeros_like(truth.query_from_nominal)
+    found = alignment["query_from_sub_scan"]
+    corrections = np.array([pose_from(pose) for pose in found]) if found else none
+    if corrections.shape != none.shape:
+        raise ValueError(f"the report has {len(corrections)} sub-scans where the log has {len(none)}")
+    stages = (("shape_ref_from_query", none), ("icp_ref_from_query", none), ("ref_from_query", corrections))
+    return {name: stage_error(pose_from(alignment[key]), applied, truth)
+            for name, (key, applied) in zip(STAGES, stages)}
+
+
+def evaluate_pairs(simulation: Simulation, report: Mapping[str, Any], overlaps: Array) -> list[PairResult]:
+    """One result for every consecutive pair of the run; positions that the report lacks are rejected pairs."""
+    entries = {entry["index"]: entry for entry in report["positions"]}
+    results = []
+    for index in range(1, len(simulation.ranges)):
+        entry = entries.get(index)
+        alignment = entry["alignment"] if entry else None
+        errors, reason = None, "not in the report"
+        if alignment and alignment["status"] == "ok":
+            errors, reason = stage_errors(alignment, pair_truth(simulation, index)), ""
+        elif entry:
+            status = alignment["status"] if alignment else "not aligned"
+            reason = f"{status}: {entry['reason']}" if entry["reason"] else status
+        results.append(PairResult(simulation.options.seed, index, float(overlaps[index - 1]), errors, reason))
+    return results
+
+
+def lost_run(seed: int, overlaps: Array, reason: str) -> list[PairResult]:
+    """All pairs of a run whose mapper gave no report: rejected, none forgotten."""
+    return [PairResult(seed, k + 1, float(value), None, reason) for k, value in enumerate(overlaps)]
