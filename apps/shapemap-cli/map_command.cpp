@@ -102,7 +102,6 @@ int run_map(const MapArguments& arguments) {
   costs.peak_memory_mib = peak_memory_mib();
   add_report(arguments, {arguments.log_path, log, result, settings.mapping, settings.reading, settings.selection,
                          settings.grid, warnings, costs}, outputs);
-  if (interrupted()) throw Interrupted();
   outputs.commit();
 
   const std::vector<std::string> unplaced = unplaced_lines(result, settings.selection);

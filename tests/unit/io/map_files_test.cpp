@@ -2,32 +2,23 @@
 #include "shapemap/io/map_files.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "shapemap/core/errors.hpp"
+#include "support/temp_folder.hpp"
 
 namespace shapemap {
 namespace {
 
-namespace fs = std::filesystem;
-
 class MapFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("shapemap_") + test->name() + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string in_folder(const std::string& name) const { return (folder_ / name).string(); }
+  std::string in_folder(const std::string& name) const { return folder_.path(name); }
 
-  fs::path folder_;
+  test::TempFolder folder_;
 };
 
 /// A robot at (2, 1) that faces north and sees a wall 3 m ahead, 1 m to its right, and nothing to its left.
@@ -119,7 +110,7 @@ TEST_F(MapFiles, AnotherEndingIsRefusedAndNothingIsLeft) {
     EXPECT_THROW(write_map_image(map, in_folder(name), nullptr), OutputError) << name;
   }
   EXPECT_THROW(write_map_image(map, in_folder("missing/map.png"), nullptr), OutputError);
-  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_TRUE(folder_.names().empty());
 }
 
 TEST(TumTrajectory, HasOneLinePerPositionWithAUnitQuaternion) {
