@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
+#include <utility>
+#include <vector>
 
 #include "support/logs.hpp"
 #include "support/temp_folder.hpp"
@@ -65,8 +68,27 @@ TEST(MrptTools, RawlogEditSeesOurPosesAsOdometry) {
   EXPECT_THAT(shown, HasSubstr("CActionRobotMovement2D"));
 }
 
-/// carmen2rawlog makes observation-only rawlogs. Its ROBOTLASER1 fields are taken over as they are, but MRPT's field
-/// of view lies symmetrically around the sensor's axis, so that only symmetrical lines can be equal.
+/// carmen2rawlog of MRPT 2.5 does not keep a log's times: it gives all observations the moment at which it runs.
+/// So what we read is compared with what MRPT itself says that the rawlog holds, and then replaced.
+void check_and_restore_timestamps(const TempFolder& folder, const Log& ours, Log& theirs) {
+  const std::string shown = output_of(folder, "rawlog-edit --info -i " + folder.path("theirs.rawlog"));
+  const std::string key = "Earliest timestamp                : ";
+  ASSERT_THAT(shown, HasSubstr(key));
+  const double earliest_s = std::stod(shown.substr(shown.find(key) + key.size()));
+  ASSERT_EQ(ours.positions.size(), theirs.positions.size());
+  EXPECT_NEAR(theirs.positions[0].timestamp_s, earliest_s, 2e-6);
+  for (std::size_t i = 0; i < ours.positions.size(); ++i) {
+    theirs.positions[i].timestamp_s = ours.positions[i].timestamp_s;
+  }
+}
+
+Log carmen2rawlog(const TempFolder& folder, const std::string& log_path) {
+  output_of(folder, "carmen2rawlog -q -w -i " + log_path + " -o " + folder.path("theirs.rawlog"));
+  return read_log(folder.path("theirs.rawlog"));
+}
+
+/// carmen2rawlog makes observation-only rawlogs. MRPT's field of view lies symmetrically around the sensor's axis, so
+/// that of ROBOTLASER1 lines only those can be equal that are symmetrical too.
 TEST(MrptTools, Carmen2rawlogOfRobotLaserLinesIsReadBackEqual) {
   if (!is_installed("carmen2rawlog")) GTEST_SKIP() << "needs carmen2rawlog of Debian's package mrpt-apps";
   const TempFolder folder;
@@ -79,12 +101,56 @@ TEST(MrptTools, Carmen2rawlogOfRobotLaserLinesIsReadBackEqual) {
     log.positions.push_back(position);
   }
   write_log(log, folder.path("in.log"), LogFormat::kCarmen);
-  output_of(folder, "carmen2rawlog -q -i " + folder.path("in.log") + " -o " + folder.path("out.rawlog"));
   const Log ours = read_log(folder.path("in.log"));
-  const Log theirs = read_log(folder.path("out.rawlog"));
+  Log theirs = carmen2rawlog(folder, folder.path("in.log"));
+  check_and_restore_timestamps(folder, ours, theirs);
   ASSERT_EQ(ours.positions.at(0).sub_scans.at(0).sensor_label, "ROBOTLASER1");
   EXPECT_EQ(theirs.positions.at(0).sub_scans.at(0).sensor_label, "ROBOTLASER1");
-  expect_same_points(ours, theirs, 1e-4);  // MRPT keeps the field of view as a float
+  // 1e-4: MRPT keeps the field of view as a float.
+  expect_same_points(ours, theirs, 1e-4);
+}
+
+/// Of FLASER lines, carmen2rawlog knows no convention of angles: it takes 0.5 degrees, or the parameter
+/// laser_front_laser_resolution, times the number of beams as the angle from the first to the last beam, which is one
+/// step more than there is. Readings, hits and the order of beams are the same; the angles must be MRPT's.
+TEST(MrptTools, Carmen2rawlogOfFlaserLinesIsReadBackWithItsAngles) {
+  if (!is_installed("carmen2rawlog")) GTEST_SKIP() << "needs carmen2rawlog of Debian's package mrpt-apps";
+  const TempFolder folder;
+  const std::array<std::pair<std::size_t, double>, 4> conventions{{{180, 1.0}, {181, 1.0}, {360, 0.5}, {361, 0.5}}};
+  for (const auto& [num_beams, step_deg] : conventions) {
+    SCOPED_TRACE(std::to_string(num_beams) + " beams");
+    Log log;
+    for (int i = 0; i < 3; ++i) {
+      Position position;
+      position.timestamp_s = 100.25 + i;
+      position.sub_scans = {make_scan(num_beams, -90 * kDegree, step_deg * kDegree)};
+      log.positions.push_back(position);
+    }
+    write_log(log, folder.path("in.log"), LogFormat::kCarmen);
+    const std::string resolution = "PARAM laser_front_laser_resolution " + std::to_string(step_deg) + " h 0\n";
+    const std::string path = folder.write("in2.log", resolution + test::read_file(folder.path("in.log")));
+    const Log ours = read_log(path);
+    Log theirs = carmen2rawlog(folder, path);
+    check_and_restore_timestamps(folder, ours, theirs);
+    ASSERT_EQ(ours.positions.size(), 3U);
+    ASSERT_EQ(theirs.positions.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const SubScan& our_scan = ours.positions[i].sub_scans.at(0);
+      const SubScan& their_scan = theirs.positions[i].sub_scans.at(0);
+      EXPECT_EQ(their_scan.sensor_label, "FLASER");
+      EXPECT_EQ(their_scan.max_range_m, our_scan.max_range_m);
+      const double aperture_rad = static_cast<double>(num_beams) * step_deg * kDegree;
+      EXPECT_NEAR(their_scan.first_angle_rad, -aperture_rad / 2, 1e-6);
+      EXPECT_NEAR(their_scan.angle_step_rad, aperture_rad / static_cast<double>(num_beams - 1), 1e-8);
+      const std::vector<Return> our_hits = returns_in_robot(our_scan, {});
+      const std::vector<Return> their_hits = returns_in_robot(their_scan, {});
+      ASSERT_EQ(our_hits.size(), their_hits.size());
+      for (std::size_t hit = 0; hit < our_hits.size(); ++hit) {
+        EXPECT_EQ(our_hits[hit].beam, their_hits[hit].beam);
+        EXPECT_EQ(our_hits[hit].range_m, their_hits[hit].range_m);
+      }
+    }
+  }
 }
 
 }  // namespace

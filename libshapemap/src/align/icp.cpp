@@ -70,11 +70,12 @@ IcpResult icp(const PartialMap& target, const Shape& query, const Pose2& start, 
   // From here on the thresholds follow the mean distance of the scan points that the start aligns.
   const double aligned_m = scan_overlap(partners).mean_distance_m;
   limit_m = aligned_m + overlap_options.slack_m;
-  const double gate_m = options.gate == IcpGate::kFactor ? options.gate_factor * aligned_m : limit_m;
   partners = partners_within(target, query, start, limit_m, overlap_options);
   result.overlap = scan_overlap(partners);
 
   while (result.iterations < options.max_iterations) {
+    const double gate_m =
+        options.gate == IcpGate::kFactor ? options.gate_factor * result.overlap.mean_distance_m : limit_m;
     const std::vector<Partner> pulling = closer_than(partners, gate_m);
     if (pulling.size() < 3) break;
     const Pose2 moved_pose = fit_pose(target, query, pulling);

@@ -48,6 +48,12 @@ class Cursor {
     advance(header->length);
     return *header;
   }
+  /// A byte that MRPT reads straight into a bool, where nothing but 0 and 1 may stand.
+  bool take_bool() {
+    const auto byte = take<std::uint8_t>();
+    if (byte > 1) fail("a truth value of " + std::to_string(byte));
+    return byte == 1;
+  }
   void end_mark() {
     if (take<unsigned char>() != kEndMark) fail("an object does not end where it should");
   }
@@ -86,7 +92,9 @@ void pass_scan(Cursor& cursor) {
   const ObjectHeader header = cursor.header();
   const int version = header.version;
   if (header.name != kScanClass || version > 7) cursor.fail("a laser scan of unknown version");
-  cursor.advance(sizeof(float) + 1 + sizeof(float));  // aperture, direction, maximum range
+  cursor.advance(sizeof(float));  // aperture
+  cursor.take_bool();             // direction
+  cursor.advance(sizeof(float));  // maximum range
   pass_pose(cursor);
   if (version < 6) pass_matrix(cursor);  // covariance of the sensor pose
 
@@ -102,7 +110,7 @@ void pass_scan(Cursor& cursor) {
     if (length > kLongestLabel) cursor.fail("a sensor label of " + std::to_string(length) + " bytes");
     cursor.advance(length + sizeof(double));  // label, pitch increment
   }
-  if (version >= 7 && cursor.take<std::uint8_t>() != 0) cursor.advance(num_beams * sizeof(std::int32_t));
+  if (version >= 7 && cursor.take_bool()) cursor.advance(num_beams * sizeof(std::int32_t));
   cursor.end_mark();
 }
 

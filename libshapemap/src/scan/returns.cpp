@@ -45,7 +45,8 @@ std::vector<Return> returns_in_robot(const SubScan& sub_scan, const ReturnOption
     const float range_m = sub_scan.ranges_m[beam];
     if (!is_return(range_m, limits)) continue;
     const double angle_rad = sub_scan.beam_angle_rad(beam);
-    const Eigen::Vector3d direction = robot_from_sensor * Eigen::Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0.0);
+    const Eigen::Vector3d direction =
+        robot_from_sensor * Eigen::Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0.0);
     const Point2 p_at_heading = mount_m + static_cast<double>(range_m) * direction.head<2>();
     returns.push_back({rotate(p_at_heading, sub_scan.nominal_heading_rad), beam, range_m});
   }

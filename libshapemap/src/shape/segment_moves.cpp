@@ -119,7 +119,11 @@ std::vector<WorkingSegment> merge_collinear(const std::vector<ScanPoint>& points
     for (std::size_t k = i + 1; k < segments.size() && !merged; ++k) {
       if (!may_be_one_surface(points, segments[i], segments[k], options)) continue;
       WorkingSegment both = joined(points, segments[i], segments[k]);
-      if (rms_to_line_m(points, both.support, both.line) > options.em_sigma_m) continue;
+      // Each part by itself: a long wall would outvote a door frame.
+      if (rms_to_line_m(points, segments[i].support, both.line) > options.em_sigma_m ||
+          rms_to_line_m(points, segments[k].support, both.line) > options.em_sigma_m) {
+        continue;
+      }
       segments[i] = std::move(both);
       segments.erase(segments.begin() + static_cast<std::ptrdiff_t>(k));
       merged = true;

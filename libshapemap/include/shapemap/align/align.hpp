@@ -29,7 +29,7 @@ struct RotationOptions {
 
 /// When an alignment is not trusted.
 struct TrustOptions {
-  int min_correspondences = 3;
+  int min_correspondences = 1;
   double min_overlap_ratio = 0.10;
 
   template <class Self, class Visit>

@@ -24,7 +24,7 @@ struct EnumNames<IcpGate> {
 struct IcpOptions {
   int max_iterations = 20;
   IcpGate gate = IcpGate::kFactor;
-  double gate_factor = 2.0;
+  double gate_factor = 3.0;
   bool decoupled = true;
 
   template <class Self, class Visit>

@@ -20,8 +20,8 @@ namespace shapemap {
 /// What is said of an option outside C++. The limits and the name are in the unit of the name: an angle is
 /// called `...-deg`, has `unit = kDegree` and is stored in radians.
 struct Field {
-  const char* name;
-  const char* help;
+  const char* name = "";
+  const char* help = "";
   double lowest = 0.0;   ///< inclusive; ignored for bool and enum
   double highest = 0.0;  ///< inclusive
   double unit = 1.0;     ///< stored value = shown value * unit

@@ -15,9 +15,9 @@ struct PolylineOptions {
   double run_gap_m = 0.20;
   double run_gap_beams = 5.0;
   double simplify_tolerance_m = 0.05;
-  double em_sigma_m = 0.03;
+  double em_sigma_m = 0.02;
   int em_max_iterations = 20;
-  int min_support = 3;
+  int min_support = 2;
   double merge_angle_rad = 10 * kDegree;
 
   template <class Self, class Visit>

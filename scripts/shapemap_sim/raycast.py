@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Exact ray casting against faces, arcs and the floor, vectorised over beams x surfaces."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .poses import Array
+from .world import World
+
+PARALLEL = 1e-12
+NEAREST_M = 1e-6
+
+
+class RayCaster:
+    """The world as flat arrays, made once and asked for many scans."""
+
+    def __init__(self, world: World) -> None:
+        starts = np.array([face.start for face in world.faces], dtype=float).reshape(-1, 2)
+        ends = np.array([face.end for face in world.faces], dtype=float).reshape(-1, 2)
+        self._start = starts
+        self._length = np.hypot(*(ends - starts).T)
+        self._along = (ends - starts) / self._length[:, None]
+        self._normal = np.stack([-self._along[:, 1], self._along[:, 0]], axis=-1)
+        self._slant = np.array([face.slant for face in world.faces], dtype=float)
+        self._face_z = np.array([(face.bottom_m, face.top_m) for face in world.faces], dtype=float).reshape(-1, 2)
+        self._centre = np.array([arc.centre for arc in world.arcs], dtype=float).reshape(-1, 2)
+        self._radius = np.array([arc.radius_m for arc in world.arcs], dtype=float)
+        self._first = np.array([arc.first_rad for arc in world.arcs], dtype=float)
+        self._span = np.array([arc.span_rad for arc in world.arcs], dtype=float)
+        self._arc_z = np.array([(arc.bottom_m, arc.top_m) for arc in world.arcs], dtype=float).reshape(-1, 2)
+
+    def cast(self, origin: Array, height_m: float, angles_rad: Array, slopes: Array) -> Array:
+        """Range [m] along each beam to the first surface, inf where there is none.
+
+        `origin` `[2]` in the map frame, `height_m` above the floor; beam i leaves in the direction `angles_rad[i]`
+        of the map and climbs `slopes[i]` metres per horizontal metre.
+        """
+        directions = np.stack([np.cos(angles_rad), np.sin(angles_rad)], axis=-1)
+        nearest = np.minimum(self._floor(height_m, slopes), np.inf)
+        if len(self._length):
+            nearest = np.minimum(nearest, self._faces(origin, height_m, directions, slopes).min(axis=1))
+        if len(self._radius):
+            nearest = np.minimum(nearest, self._arcs(origin, height_m, directions, slopes).min(axis=1))
+        return nearest * np.sqrt(1.0 + slopes**2)
+
+    @staticmethod
+    def _floor(height_m: float, slopes: Array) -> Array:
+        """Horizontal distance [m] at which a descending beam meets the floor."""
+        return np.where(slopes < -PARALLEL, height_m / np.maximum(-slopes, PARALLEL), np.inf)
+
+    def _faces(self, origin: Array, height_m: float, directions: Array, slopes: Array) -> Array:
+        """Horizontal distances `[beams, faces]`. A face that leans by s per metre of height is met where
+        normal . (origin + t direction - start) = s (height + t slope)."""
+        offset = origin - self._start
+        numerator = self._slant * height_m - (self._normal * offset).sum(axis=1)
+        denominator = directions @ self._normal.T - slopes[:, None] * self._slant
+        with np.errstate(divide="ignore", invalid="ignore"):
+            t = np.where(np.abs(denominator) > PARALLEL, numerator / denominator, np.inf)
+            u = (self._along * offset).sum(axis=1) + t * (directions @ self._along.T)
+            z = height_m + t * slopes[:, None]
+            met = (t > NEAREST_M) & (u >= 0.0) & (u <= self._length) & _between(z, self._face_z)
+        return np.where(met, t, np.inf)
+
+    def _arcs(self, origin: Array, height_m: float, directions: Array, slopes: Array) -> Array:
+        """Horizontal distances `[beams, arcs]`: the nearer of the circle's two crossings that lies on the arc."""
+        offset = origin - self._centre
+        half_b = directions @ offset.T
+        discriminant = half_b**2 - ((offset**2).sum(axis=1) - self._radius**2)
+        root = np.sqrt(np.maximum(discriminant, 0.0))
+        nearest = np.full(half_b.shape, np.inf)
+        for t in (-half_b + root, -half_b - root):
+            hit = offset[None] + t[..., None] * directions[:, None, :]
+            turn = np.mod(np.arctan2(hit[..., 1], hit[..., 0]) - self._first, 2.0 * np.pi)
+            z = height_m + t * slopes[:, None]
+            met = (discriminant >= 0.0) & (t > NEAREST_M) & (turn <= self._span) & _between(z, self._arc_z)
+            nearest = np.where(met & (t < nearest), t, nearest)
+        return nearest
+
+
+def _between(z: Array, limits: Array) -> Array:
+    return (z >= limits[:, 0]) & (z <= limits[:, 1])
