@@ -176,7 +176,7 @@ def test_a_full_disk_leaves_nothing(fails, room_log, limit):
 def small_file_system(tmp_path):
     folder = tmp_path / "small"
     folder.mkdir()
-    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=8k", "none", str(folder)], capture_output=True)
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4k", "none", str(folder)], capture_output=True)
     if mounted.returncode != 0:
         pytest.skip("cannot mount a small file system (that takes root); the file size limit is tested instead")
     try:

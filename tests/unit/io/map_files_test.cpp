@@ -97,8 +97,8 @@ TEST_F(MapFiles, APathIsDrawnInColourOrInGrey) {
   write_map_image(map, in_folder("map.pgm"), &world.placed);
   const cv::Mat grey = cv::imread(in_folder("map.pgm"), cv::IMREAD_UNCHANGED);
   ASSERT_EQ(grey.type(), CV_8UC1);
-  EXPECT_NE(grey.at<std::uint8_t>(robot.y(), robot.x()), map.grey[static_cast<std::size_t>(
-                                                             robot.y() * map.width_cells + robot.x())]);
+  EXPECT_NE(grey.at<std::uint8_t>(robot.y(), robot.x()),
+            map.grey[static_cast<std::size_t>(robot.y() * map.width_cells + robot.x())]);
   const Eigen::Vector2i wall = map.pixel_at(world.wall_ahead_m);
   const std::uint8_t wall_grey = map.grey[static_cast<std::size_t>(wall.y() * map.width_cells + wall.x())];
   EXPECT_EQ(colour.at<cv::Vec3b>(wall.y(), wall.x()), cv::Vec3b(wall_grey, wall_grey, wall_grey));
@@ -129,9 +129,7 @@ TEST(TumTrajectory, HasOneLinePerPositionWithAUnitQuaternion) {
   EXPECT_FALSE(lines >> t);
 }
 
-TEST(TumTrajectory, RefusesNumbersThatFitNoLine) {
-  EXPECT_THROW(tum_trajectory({{0, 1e300, {}, {}}}), OutputError);
-}
+TEST(TumTrajectory, RefusesNumbersThatFitNoLine) { EXPECT_THROW(tum_trajectory({{0, 1e300, {}, {}}}), OutputError); }
 
 }  // namespace
 }  // namespace shapemap
