@@ -9,11 +9,16 @@ namespace {
 
 const char* value_name(OptionEntry::Kind kind) {
   switch (kind) {
-    case OptionEntry::Kind::kNumber: return "NUMBER";
-    case OptionEntry::Kind::kInteger: return "N";
-    case OptionEntry::Kind::kChoice: return "CHOICE";
-    case OptionEntry::Kind::kText: return "TEXT";
-    case OptionEntry::Kind::kSwitch: return "";
+    case OptionEntry::Kind::kNumber:
+      return "NUMBER";
+    case OptionEntry::Kind::kInteger:
+      return "N";
+    case OptionEntry::Kind::kChoice:
+      return "CHOICE";
+    case OptionEntry::Kind::kText:
+      return "TEXT";
+    case OptionEntry::Kind::kSwitch:
+      return "";
   }
   return "";
 }
@@ -35,8 +40,8 @@ CLI::Option* add_flag(CLI::App& app, const OptionEntry& entry) {
   if (entry.kind == OptionEntry::Kind::kSwitch) {
     return app.add_flag("--" + entry.name + ",!--no-" + entry.name, description);
   }
-  CLI::Option* option =
-      app.add_option("--" + entry.name, [](const CLI::results_t&) { return true; }, description);
+  CLI::Option* option = app.add_option(
+      "--" + entry.name, [](const CLI::results_t&) { return true; }, description);
   return option->option_text(value_name(entry.kind));
 }
 

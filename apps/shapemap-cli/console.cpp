@@ -27,7 +27,29 @@ std::string sensor_text(const LogSummary::Sensor& sensor) {
   return all;
 }
 
+/// Length of the UTF-8 character at text[at], 0 when there is none.
+std::size_t character_length(const std::string& text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+  const unsigned first = byte(at);
+  const std::size_t length = first < 0x80 ? 1 : first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+  if (first > 0xF4 || (first >= 0x80 && first < 0xC2)) return 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(at + i) & 0xC0U) != 0x80U) return 0;
+  }
+  return length;
+}
+
 }  // namespace
+
+std::string printable(std::string text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = character_length(text, at);
+    const auto first = static_cast<unsigned char>(text[at]);
+    if (length == 0 || first < 0x20 || first == 0x7F) text[at] = '?';
+    at += length == 0 ? 1 : length;
+  }
+  return text;
+}
 
 void print_text(const std::string& text) {
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
@@ -38,7 +60,7 @@ void print_text(const std::string& text) {
 
 void print_lines(const std::string& prefix, const std::vector<std::string>& lines, std::size_t max_lines) {
   for (std::size_t i = 0; i < lines.size() && i < max_lines; ++i) {
-    std::fprintf(stderr, "shapemap-cli: %s%s\n", prefix.c_str(), lines[i].c_str());
+    std::fprintf(stderr, "shapemap-cli: %s%s\n", prefix.c_str(), printable(lines[i]).c_str());
   }
   if (lines.size() > max_lines) {
     std::fprintf(stderr, "shapemap-cli: %s... and %zu more, see --report\n", prefix.c_str(), lines.size() - max_lines);

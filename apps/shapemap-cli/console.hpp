@@ -14,6 +14,9 @@ inline constexpr std::size_t kMaxListed = 20;
 /// To standard output. Throws OutputError when it does not take it.
 void print_text(const std::string& text);
 
+/// `text` as one line that a terminal can show: control characters and bytes that are no UTF-8 become '?'.
+std::string printable(std::string text);
+
 /// To stderr, each line with the program's name and `prefix`; after `max_lines` only how many more there are.
 void print_lines(const std::string& prefix, const std::vector<std::string>& lines, std::size_t max_lines);
 

@@ -16,7 +16,6 @@ int run_convert(const ConvertArguments& arguments) {
   set_interrupt_policy(OnInterrupt::kFinishStep);
   OutputSet outputs;
   outputs.add(arguments.out_path, [&](const std::string& path) { write_log(log, path, arguments.to); });
-  if (interrupted()) throw Interrupted();
   outputs.commit();
   print_lines("warning: ", log.warnings, kMaxListed);
   return kExitOk;

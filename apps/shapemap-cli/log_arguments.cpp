@@ -67,10 +67,11 @@ std::optional<ConvertArguments> parse_convert_arguments(const std::vector<std::s
   append_options(table, "Reading", arguments.reading);
 
   CLI::App app("Writes a laser log in another format.", "shapemap-cli convert");
-  app.footer("Endings: .rawlog; .log or .clf for CARMEN; .nist or .txt for NIST text; .gz after it compresses.\n\n"
-             "Examples:\n  shapemap-cli convert run.rawlog run.log.gz\n"
-             "  shapemap-cli convert readings.txt run.rawlog --fov-deg 100 --sub-scans 4\n\n" +
-             exit_code_help());
+  app.footer(
+      "Endings: .rawlog; .log or .clf for CARMEN; .nist or .txt for NIST text; .gz after it compresses.\n\n"
+      "Examples:\n  shapemap-cli convert run.rawlog run.log.gz\n"
+      "  shapemap-cli convert readings.txt run.rawlog --fov-deg 100 --sub-scans 4\n\n" +
+      exit_code_help());
   app.add_option("IN", arguments.in_path, "log to read")->required()->option_text(" ");
   app.add_option("OUT", arguments.out_path, "log to write")->required()->option_text(" ");
   from.add(app, "--from", "format of IN; auto: by its content; example: --from carmen");

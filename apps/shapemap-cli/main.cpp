@@ -4,6 +4,7 @@
 #include <new>
 
 #include "commands.hpp"
+#include "console.hpp"
 #include "exit_codes.hpp"
 #include "shapemap/core/errors.hpp"
 #include "signals.hpp"
@@ -11,7 +12,7 @@
 namespace {
 
 int fail(int exit_code, const char* message) {
-  std::fprintf(stderr, "shapemap-cli: %s\n", message);
+  std::fprintf(stderr, "shapemap-cli: %s\n", shapemap::cli::printable(message).c_str());
   return exit_code;
 }
 

@@ -43,9 +43,9 @@ void add_source(CLI::App& app, Source& source) {
 
 void take_source(const Source& source, MapArguments& arguments) {
   const std::array<std::pair<const std::string*, LogFormat>, 4> given{{{&source.any, LogFormat::kAuto},
-                                                                      {&source.rawlog, LogFormat::kRawlog},
-                                                                      {&source.carmen, LogFormat::kCarmen},
-                                                                      {&source.nist, LogFormat::kNist}}};
+                                                                       {&source.rawlog, LogFormat::kRawlog},
+                                                                       {&source.carmen, LogFormat::kCarmen},
+                                                                       {&source.nist, LogFormat::kNist}}};
   int num_given = source.demo ? 1 : 0;
   for (const auto& [path, format] : given) {
     if (path->empty()) continue;
@@ -62,10 +62,12 @@ void add_outputs(CLI::App& app, MapArguments& arguments) {
   const auto add = [&](const char* name, std::string& path, const char* help) {
     app.add_option(name, path, help)->option_text("FILE")->group("Output");
   };
-  add("--out", arguments.map_path, "the map, .png, .pgm or .tif, with a .yaml for ROS beside it; example: --out map.png");
+  add("--out", arguments.map_path,
+      "the map, .png, .pgm or .tif, with a .yaml for ROS beside it; example: --out map.png");
   add("--trajectory", arguments.trajectory_path,
       "placed positions as TUM lines, '-' for standard output; example: --trajectory map.tum");
-  add("--carmen-out", arguments.carmen_path, "placed positions as a CARMEN log with poses; example: --carmen-out map.log");
+  add("--carmen-out", arguments.carmen_path,
+      "placed positions as a CARMEN log with poses; example: --carmen-out map.log");
   add("--rawlog-out", arguments.rawlog_path,
       "placed positions as a rawlog with poses; example: --rawlog-out map.rawlog");
   add("--report", arguments.report_path,
@@ -113,7 +115,8 @@ std::optional<MapArguments> parse_map_arguments(const std::vector<std::string>& 
   app.add_option("--config", config_path, "options file; what is typed wins over it; example: --config options.toml")
       ->option_text("FILE.toml");
   app.add_flag("--dump-config", arguments.dump_config, "print the options file for what is in effect, and exit");
-  app.add_flag("--strict-paper", strict_paper, "start from the paper's literal readings instead of the better settings");
+  app.add_flag("--strict-paper", strict_paper,
+               "start from the paper's literal readings instead of the better settings");
   const TableFlags flags(app, table);
   if (!parse(app, typed)) return std::nullopt;
 

@@ -51,11 +51,12 @@ void print_summary(const MapArguments& arguments, const MapResult& result, doubl
 
 void print_details(const Log& log, const RunCosts& costs, const StageTimes& times) {
   std::fputs(log_summary_text(summarise(log)).c_str(), stderr);
-  std::fprintf(stderr,
-               "seconds     read %.2f, map %.2f (shapes %.2f, alignment %.2f, ICP %.2f, decoupled ICP %.2f), write %.2f\n"
-               "memory      %.0f MiB\n",
-               costs.read_s, costs.map_s, times.shape_s, times.align_s, times.icp_s, times.decoupled_icp_s,
-               costs.write_s, costs.peak_memory_mib);
+  std::fprintf(
+      stderr,
+      "seconds     read %.2f, map %.2f (shapes %.2f, alignment %.2f, ICP %.2f, decoupled ICP %.2f), write %.2f\n"
+      "memory      %.0f MiB\n",
+      costs.read_s, costs.map_s, times.shape_s, times.align_s, times.icp_s, times.decoupled_icp_s, costs.write_s,
+      costs.peak_memory_mib);
 }
 
 MapResult map_with_progress(const Log& log, const MapArguments& arguments, std::vector<std::string>& warnings) {
@@ -100,9 +101,10 @@ int run_map(const MapArguments& arguments) {
   costs.wall_s = total.seconds();
   costs.cpu_s = cpu_seconds();
   costs.peak_memory_mib = peak_memory_mib();
-  add_report(arguments, {arguments.log_path, log, result, settings.mapping, settings.reading, settings.selection,
-                         settings.grid, warnings, costs}, outputs);
-  if (interrupted()) throw Interrupted();
+  add_report(arguments,
+             {arguments.log_path, log, result, settings.mapping, settings.reading, settings.selection, settings.grid,
+              warnings, costs},
+             outputs);
   outputs.commit();
 
   const std::vector<std::string> unplaced = unplaced_lines(result, settings.selection);

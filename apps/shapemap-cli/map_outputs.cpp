@@ -24,8 +24,7 @@ Log placed_log(const Log& log, const std::vector<PlacedPosition>& placed, LogPos
 void add_map(const MapArguments& arguments, const GridMap& map, const std::vector<PlacedPosition>& placed,
              OutputSet& outputs) {
   const auto* path_to_draw = arguments.settings.drawing.draw_path ? &placed : nullptr;
-  outputs.add(arguments.map_path,
-              [&](const std::string& path) { write_map_image(map, path, path_to_draw); });
+  outputs.add(arguments.map_path, [&](const std::string& path) { write_map_image(map, path, path_to_draw); });
   const std::string image_name = std::filesystem::path(arguments.map_path).filename().string();
   outputs.add_text(ros_yaml_path(arguments.map_path), ros_map_yaml(map, image_name));
 }

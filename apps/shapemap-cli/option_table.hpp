@@ -20,9 +20,9 @@ struct OptionEntry {
   std::string name;
   std::string help;
   Kind kind = Kind::kText;
-  std::string allowed;                           ///< limits or spellings, for the help
-  std::function<std::string()> text;             ///< as it would be typed; "true" or "false" for a switch
-  std::function<void(const std::string&)> set;   ///< throws ConfigError
+  std::string allowed;                          ///< limits or spellings, for the help
+  std::function<std::string()> text;            ///< as it would be typed; "true" or "false" for a switch
+  std::function<void(const std::string&)> set;  ///< throws ConfigError
 };
 
 using OptionTable = std::vector<OptionEntry>;

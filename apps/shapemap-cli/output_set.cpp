@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "shapemap/core/errors.hpp"
+#include "signals.hpp"
 
 namespace shapemap::cli {
 namespace {
@@ -100,6 +101,7 @@ void OutputSet::add_text(const std::string& path, const std::string& content) {
 void OutputSet::commit() {
   // Streams first: they cannot be taken back, and the files need nothing but a rename any more.
   for (const Stream& stream : streams_) write_stream(stream.path, stream.content);
+  if (interrupted()) throw Interrupted();
   std::size_t num_done = 0;
   try {
     for (; num_done < files_.size(); ++num_done) files_[num_done].file->commit();

@@ -24,6 +24,7 @@ class OutputSet {
   /// `path` may also be "-" for standard output, a device or a pipe; those are written on commit.
   void add_text(const std::string& path, const std::string& content);
   /// Everything to its place. When something fails, what is new among the outputs is taken away again.
+  /// Throws Interrupted when that was asked for before the first file is in place.
   void commit();
 
  private:

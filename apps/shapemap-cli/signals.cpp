@@ -39,9 +39,7 @@ void install_signal_handlers() {
   for (const int signal : {SIGPIPE, SIGXFSZ}) handle(signal, SIG_IGN, 0);
 }
 
-void set_interrupt_policy(OnInterrupt policy) {
-  exit_at_once = policy == OnInterrupt::kExitAtOnce ? 1 : 0;
-}
+void set_interrupt_policy(OnInterrupt policy) { exit_at_once = policy == OnInterrupt::kExitAtOnce ? 1 : 0; }
 
 bool interrupted() { return was_interrupted != 0; }
 

@@ -75,7 +75,8 @@ TomlLine parse_toml_line(const std::string& line) {
   } else {
     parsed.value = trimmed(value.substr(0, value.find('#')));
   }
-  if (!rest.empty() && rest.front() != '#') throw ConfigError("unexpected text after the value of '" + parsed.key + "'");
+  if (!rest.empty() && rest.front() != '#')
+    throw ConfigError("unexpected text after the value of '" + parsed.key + "'");
   return parsed;
 }
 

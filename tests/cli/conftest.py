@@ -43,7 +43,7 @@ def room_log(tmp_path, room_text):
 
 @pytest.fixture
 def files_of(tmp_path):
-    """Names of all files in the test's folder, temporary ones too."""
+    """Names of all files in the test's folder, hidden and temporary ones too."""
     return lambda: sorted(str(p.relative_to(tmp_path)) for p in tmp_path.rglob("*") if not p.is_dir())
 
 

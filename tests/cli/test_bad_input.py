@@ -57,7 +57,13 @@ def test_a_gz_without_content(fails, tmp_path):
 
 @pytest.mark.parametrize(
     "line",
-    ["FLASER 181 1.0 2.0 3.0", "FLASER 1000000000 1 2 3 0 0 0 0 0 0 1 robot 1", "FLASER -5 1 2 3", "FLASER", "FLASER x"],
+    [
+        "FLASER 181 1.0 2.0 3.0",
+        "FLASER 1000000000 1 2 3 0 0 0 0 0 0 1 robot 1",
+        "FLASER -5 1 2 3",
+        "FLASER",
+        "FLASER x",
+    ],
 )
 def test_a_carmen_line_that_is_no_scan_is_named(fails, tmp_path, room_text, line):
     (tmp_path / "bad.log").write_text(room_text.splitlines()[0] + "\n" + line + "\n" + room_text)

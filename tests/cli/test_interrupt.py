@@ -61,22 +61,39 @@ def test_interrupt_at_any_early_moment(cli_path, long_log, tmp_path, files_of, d
 
 
 def test_interrupt_while_writing(cli_path, tmp_path, files_of):
-    """Signals at many moments of a short run: the outputs are all there or none is."""
+    """The trajectory goes to a pipe that nobody reads yet: the other outputs wait in temporary files."""
     (tmp_path / "room.log").write_text(synthetic_log.carmen_log(3))
-    arguments = [cli_path, "room.log", "--out", "map.png", "--trajectory", "map.tum", "--resolution-m", "0.004"]
-    codes = set()
-    for i in range(25):
+    os.mkfifo(tmp_path / "pipe")
+    arguments = [cli_path, "room.log", "--out", "map.png", "--trajectory", "pipe"]
+    process = subprocess.Popen(arguments, cwd=tmp_path, stderr=subprocess.PIPE)
+    while len(files_of()) < 4:
+        assert process.poll() is None
+        time.sleep(0.02)
+    time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    (tmp_path / "pipe").read_bytes()
+    _, errors = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert errors == b"shapemap-cli: interrupted; nothing written\n"
+    assert files_of() == ["pipe", "room.log"]
+
+
+def test_interrupt_at_any_moment_gives_all_or_nothing(cli_path, tmp_path, files_of):
+    (tmp_path / "room.log").write_text(synthetic_log.carmen_log(3))
+    arguments = [cli_path, "room.log", "--out", "map.png", "--trajectory", "map.tum", "--resolution-m", "0.01"]
+    outputs = ["map.png", "map.tum", "map.yaml"]
+    begin = time.monotonic()
+    subprocess.run(arguments, cwd=tmp_path, check=True, capture_output=True)
+    duration_s = time.monotonic() - begin
+    for i in range(15):
+        for name in outputs:
+            (tmp_path / name).unlink(missing_ok=True)
         process = subprocess.Popen(arguments, cwd=tmp_path, stderr=subprocess.PIPE)
-        time.sleep(0.02 + 0.02 * i)
+        time.sleep(duration_s * (0.4 + 0.05 * i))
         process.send_signal(signal.SIGINT)
         process.communicate(timeout=30)
-        codes.add(process.returncode)
-        outputs = {"map.png", "map.tum", "map.yaml"}
         if process.returncode == 0:
-            assert set(files_of()) == outputs | {"room.log"}
-            for name in outputs:
-                (tmp_path / name).unlink()
+            assert files_of() == [*outputs, "room.log"]
         else:
             assert process.returncode in (130, -signal.SIGINT)
             assert files_of() == ["room.log"]
-    assert 130 in codes

@@ -14,8 +14,8 @@ def outputs_of(run, tmp_path):
 
     def outputs(folder, log, *arguments):
         (tmp_path / folder).mkdir()
-        names = ["--out", "map.png"], ["--trajectory", "map.tum"], ["--carmen-out", "map.log"], ["--rawlog-out", "map.rawlog"]
-        flags = [part for flag, name in names for part in (flag, f"{folder}/{name}")]
+        outs = {"--out": "map.png", "--trajectory": "map.tum", "--carmen-out": "map.log", "--rawlog-out": "map.rawlog"}
+        flags = [part for flag, name in outs.items() for part in (flag, f"{folder}/{name}")]
         result = run(log, *flags, "--report", f"{folder}/report.json", "--draw-path", *arguments)
         assert result.returncode == 0, result.stderr
         report = json.loads((tmp_path / folder / "report.json").read_text())

@@ -16,8 +16,8 @@ namespace {
 
 using MrptGrid = mrpt::maps::COccupancyGridMap2D;
 
-constexpr int kMarginCells = 4;          // so that walls at the rim stay visible
-constexpr double kMaxCells = 400e6;      // one byte each here, up to four in a coloured picture
+constexpr int kMarginCells = 4;           // so that walls at the rim stay visible
+constexpr double kMaxCells = 400e6;       // one byte each here, up to four in a coloured picture
 constexpr double kMaxCellsPerSide = 1e6;  // readers of pictures, OpenCV's too, refuse wider ones
 
 /// What one laser saw from one place, in the map frame.
@@ -77,8 +77,9 @@ void check_size(const Extent& extent, double resolution_m) {
                     extent.width() * extent.height() <= kMaxCells;
   if (fits) return;  // written so that NaN fails
   std::ostringstream why;
-  why << "the map would be " << extent.width() * resolution_m << " x " << extent.height() * resolution_m << " m, more than "
-      << kMaxCells << " cells of " << resolution_m << " m; raise --resolution-m, or lower --max-range";
+  why << "the map would be " << extent.width() * resolution_m << " x " << extent.height() * resolution_m
+      << " m, more than " << kMaxCells << " cells of " << resolution_m
+      << " m; raise --resolution-m, or lower --max-range";
   throw OutputError(why.str());
 }
 

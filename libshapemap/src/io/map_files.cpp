@@ -42,7 +42,8 @@ std::string ros_map_yaml(const GridMap& map, const std::string& image_name) {
   std::ostringstream yaml;
   yaml << "image: " << yaml_string(image_name) << "\n"
        << "resolution: " << exact(map.resolution_m) << "\n"
-       << "origin: [" << exact(map.origin_m.x()) << ", " << exact(map.origin_m.y()) << ", 0]\n"
+       << "origin: [" << exact(map.origin_m.x()) << ", " << exact(map.origin_m.y())
+       << ", 0]\n"
        // Occupancy is (255 - grey) / 255: what was never seen is 0.5 and stays between the two limits.
        << "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\nmode: trinary\n";
   return yaml.str();
@@ -53,10 +54,11 @@ std::string tum_trajectory(const std::vector<PlacedPosition>& placed) {
   char line[256];
   for (const PlacedPosition& place : placed) {
     const Pose2& pose = place.map_from_robot;
-    const int length = std::snprintf(line, sizeof line, "%.9f %.9f %.9f 0 0 0 %.12f %.12f\n", place.timestamp_s, pose.x_m,
-                                     pose.y_m, std::sin(pose.theta_rad / 2), std::cos(pose.theta_rad / 2));
+    const int length = std::snprintf(line, sizeof line, "%.9f %.9f %.9f 0 0 0 %.12f %.12f\n", place.timestamp_s,
+                                     pose.x_m, pose.y_m, std::sin(pose.theta_rad / 2), std::cos(pose.theta_rad / 2));
     if (length < 0 || length >= static_cast<int>(sizeof line)) {
-      throw OutputError("position " + std::to_string(place.position_index) + " has a timestamp or pose beyond all bounds");
+      throw OutputError("position " + std::to_string(place.position_index) +
+                        " has a timestamp or pose beyond all bounds");
     }
     lines += line;
   }

@@ -136,14 +136,10 @@ Json fragments_json(const MapResult& result) {
 Json timings_json(const RunReport& report) {
   const StageTimes& times = report.result.times;
   const RunCosts& costs = report.costs;
-  return {{"shape", times.shape_s},
-          {"align", times.align_s},
-          {"icp", times.icp_s},
-          {"decoupled_icp", times.decoupled_icp_s},
-          {"read", costs.read_s},
-          {"map", costs.map_s},
-          {"write", costs.write_s},
-          {"wall", costs.wall_s},
+  return {{"shape", times.shape_s}, {"align", times.align_s},
+          {"icp", times.icp_s},     {"decoupled_icp", times.decoupled_icp_s},
+          {"read", costs.read_s},   {"map", costs.map_s},
+          {"write", costs.write_s}, {"wall", costs.wall_s},
           {"cpu", costs.cpu_s}};
 }
 

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-
 #include "shapemap/core/errors.hpp"
 
 namespace shapemap {

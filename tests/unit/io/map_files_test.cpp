@@ -2,32 +2,23 @@
 #include "shapemap/io/map_files.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "shapemap/core/errors.hpp"
+#include "support/temp_folder.hpp"
 
 namespace shapemap {
 namespace {
 
-namespace fs = std::filesystem;
-
 class MapFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("shapemap_") + test->name() + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string in_folder(const std::string& name) const { return (folder_ / name).string(); }
+  std::string in_folder(const std::string& name) const { return folder_.path(name); }
 
-  fs::path folder_;
+  test::TempFolder folder_;
 };
 
 /// A robot at (2, 1) that faces north and sees a wall 3 m ahead, 1 m to its right, and nothing to its left.
@@ -106,8 +97,8 @@ TEST_F(MapFiles, APathIsDrawnInColourOrInGrey) {
   write_map_image(map, in_folder("map.pgm"), &world.placed);
   const cv::Mat grey = cv::imread(in_folder("map.pgm"), cv::IMREAD_UNCHANGED);
   ASSERT_EQ(grey.type(), CV_8UC1);
-  EXPECT_NE(grey.at<std::uint8_t>(robot.y(), robot.x()), map.grey[static_cast<std::size_t>(
-                                                             robot.y() * map.width_cells + robot.x())]);
+  EXPECT_NE(grey.at<std::uint8_t>(robot.y(), robot.x()),
+            map.grey[static_cast<std::size_t>(robot.y() * map.width_cells + robot.x())]);
   const Eigen::Vector2i wall = map.pixel_at(world.wall_ahead_m);
   const std::uint8_t wall_grey = map.grey[static_cast<std::size_t>(wall.y() * map.width_cells + wall.x())];
   EXPECT_EQ(colour.at<cv::Vec3b>(wall.y(), wall.x()), cv::Vec3b(wall_grey, wall_grey, wall_grey));
@@ -119,7 +110,7 @@ TEST_F(MapFiles, AnotherEndingIsRefusedAndNothingIsLeft) {
     EXPECT_THROW(write_map_image(map, in_folder(name), nullptr), OutputError) << name;
   }
   EXPECT_THROW(write_map_image(map, in_folder("missing/map.png"), nullptr), OutputError);
-  EXPECT_TRUE(fs::is_empty(folder_));
+  EXPECT_TRUE(folder_.names().empty());
 }
 
 TEST(TumTrajectory, HasOneLinePerPositionWithAUnitQuaternion) {
@@ -138,9 +129,7 @@ TEST(TumTrajectory, HasOneLinePerPositionWithAUnitQuaternion) {
   EXPECT_FALSE(lines >> t);
 }
 
-TEST(TumTrajectory, RefusesNumbersThatFitNoLine) {
-  EXPECT_THROW(tum_trajectory({{0, 1e300, {}, {}}}), OutputError);
-}
+TEST(TumTrajectory, RefusesNumbersThatFitNoLine) { EXPECT_THROW(tum_trajectory({{0, 1e300, {}, {}}}), OutputError); }
 
 }  // namespace
 }  // namespace shapemap

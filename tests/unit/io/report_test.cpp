@@ -39,8 +39,15 @@ class Report : public testing::Test {
     selection_.every = 2;
   }
   Json parsed() const {
-    return Json::parse(json_report(
-        {"run\xFF.log", log_, result_, mapping_, reading_, selection_, grid_, {"odd"}, {1.0, 2.0, 3.0, 6.5, 6.0, 50.0}}));
+    return Json::parse(json_report({"run\xFF.log",
+                                    log_,
+                                    result_,
+                                    mapping_,
+                                    reading_,
+                                    selection_,
+                                    grid_,
+                                    {"odd"},
+                                    {1.0, 2.0, 3.0, 6.5, 6.0, 50.0}}));
   }
 
   Log log_;
