@@ -129,7 +129,8 @@ TEST(BadInput, DamagedGzipIsNeverTakenForWhole) {
 TEST(BadInput, RandomEditsOfTextLogsNeverDoMoreThanAnInputError) {
   const TempFolder folder;
   const std::string nist = "shapemap-scans 1\nunits cm deg\nsensor l beams 3 first_angle -50 "
-                           "angle_step 25 max_range 2000 mount 1 2 3 4 5 6\nposition 1 reference 1 2 3\nscan l heading 0 ranges 1 2 -\n";
+                           "angle_step 25 max_range 2000 mount 1 2 3 4 5 6\n"
+                           "position 1 reference 1 2 3\nscan l heading 0 ranges 1 2 -\n";
   const std::string robot_laser = "# shapemap mount 1 2 3 4 5 6\nROBOTLASER1 0 -1 2 1 8 0 0 3 1 2 3 1 5 "
                                   "0 0 0 0 0 0 0 0 0 0 0 5 h 1\n# shapemap same-position\n"
                                   "FLASER 3 1 2 3 0 0 0 0 0 0 1 h 1\n";
