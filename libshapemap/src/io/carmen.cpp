@@ -155,7 +155,9 @@ class CarmenReader {
     const std::string_view word = words.next();
     const std::optional<long long> count = parse_count(word);
     if (word.empty()) throw lines_.error("too few values: the number of remissions is missing");
-    if (!count || *count < 0) throw lines_.error("'" + std::string(word) + "' where the number of remissions should be");
+    if (!count || *count < 0) {
+      throw lines_.error("'" + std::string(word) + "' where the number of remissions should be");
+    }
     const auto wanted = static_cast<std::size_t>(*count);
     if (words.skip(wanted) < wanted) {
       throw lines_.error("too few values: the line announces " + std::to_string(wanted) + " remissions");

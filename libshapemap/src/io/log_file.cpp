@@ -28,11 +28,12 @@ void LaserChoice::report(const std::string& path, Log& log) const {
   for (const auto& [label, count] : left_out_) {
     others += (others.empty() ? "" : ", ") + quoted(label) + " (" + std::to_string(count) + " scans)";
   }
-  if (log.positions.empty() && !others.empty()) {
+  if (log.positions.empty() && !wanted_.empty() && !others.empty()) {
     throw InputError(path + ": no scans of a laser called " + quoted(wanted_) + "; the log has " + others);
   }
   if (wanted_.empty() && !others.empty()) {
-    log.warnings.push_back(path + ": only laser " + quoted(first_) + " is used; --sensor-label picks another: " + others);
+    log.warnings.push_back(path + ": only laser " + quoted(first_) +
+                           " is used; --sensor-label picks another: " + others);
   }
 }
 

@@ -126,6 +126,34 @@ TEST(BadInput, DamagedGzipIsNeverTakenForWhole) {
   }
 }
 
+TEST(BadInput, RandomEditsOfTextLogsNeverDoMoreThanAnInputError) {
+  const TempFolder folder;
+  const std::string nist = "shapemap-scans 1\nunits cm deg\nsensor l beams 3 first_angle -50 "
+                           "angle_step 25 max_range 2000 mount 1 2 3 4 5 6\n"
+                           "position 1 reference 1 2 3\nscan l heading 0 ranges 1 2 -\n";
+  const std::string robot_laser = "# shapemap mount 1 2 3 4 5 6\nROBOTLASER1 0 -1 2 1 8 0 0 3 1 2 3 1 5 "
+                                  "0 0 0 0 0 0 0 0 0 0 0 5 h 1\n# shapemap same-position\n"
+                                  "FLASER 3 1 2 3 0 0 0 0 0 0 1 h 1\n";
+  const std::string alphabet = "0123456789-+.e# \n\tnaif\r";
+  std::mt19937 rng(5);
+  LogReadOptions options;
+  options.fov_rad = 1.0;
+  for (int run = 0; run < 2000; ++run) {
+    std::string content = run % 2 == 0 ? nist : robot_laser;
+    for (int edits = 1 + static_cast<int>(rng() % 3U); edits > 0; --edits) {
+      content[rng() % content.size()] = alphabet[rng() % alphabet.size()];
+    }
+    const std::string path = folder.write("a.log", content);
+    for (const LogFormat format : {LogFormat::kAuto, LogFormat::kCarmen, LogFormat::kNist}) {
+      try {
+        EXPECT_LE(read_log(path, format, options).positions.size(), 8U);
+      } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), AllOf(HasSubstr("a.log"), Not(HasSubstr("\n"))));
+      }
+    }
+  }
+}
+
 TEST(BadInput, JoinedGzipFilesAreOneLog) {
   const TempFolder folder;
   const std::string one = test::read_file(folder.write_gz("one.gz", carmen_lines(20)));

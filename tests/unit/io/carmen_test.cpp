@@ -68,8 +68,9 @@ TEST_F(Carmen, OtherCountsNeedAFieldOfView) {
 }
 
 TEST_F(Carmen, RobotLaserHasItsOwnAnglesAndLimits) {
-  const SubScan scan = read("ROBOTLASER1 0 -1.0 2.0 0.5 7.5 0.1 0 5 1 2 3 7.5 8 2 10 20 l l l r r r 0 0 0 0 0 33.5 h 1\n")
-                           .positions.at(0).sub_scans.at(0);
+  const Log log = read("ROBOTLASER1 0 -1.0 2.0 0.5 7.5 0.1 0 5 1 2 3 7.5 8 2 10 20 l l l r r r 0 0 0 0 0 33.5 h 1\n");
+  EXPECT_EQ(log.positions.at(0).timestamp_s, 33.5);
+  const SubScan& scan = log.positions[0].sub_scans.at(0);
   EXPECT_EQ(scan.first_angle_rad, -1.0);
   EXPECT_EQ(scan.angle_step_rad, 0.5);
   EXPECT_EQ(scan.max_range_m, 7.5);
@@ -105,7 +106,8 @@ TEST_F(Carmen, OneLaserIsUsedAndTheOthersAreNamed) {
 TEST_F(Carmen, ReadingsThatAreNoDistancesAreNoReturns) {
   LogReadOptions options;
   options.fov_rad = 1.0;
-  const SubScan scan = read("FLASER 6 nan inf -1 0 2 -inf 0 0 0 0 0 0 1 h 1\n", options).positions.at(0).sub_scans.at(0);
+  const Log log = read("FLASER 6 nan inf -1 0 2 -inf 0 0 0 0 0 0 1 h 1\n", options);
+  const SubScan& scan = log.positions.at(0).sub_scans.at(0);
   EXPECT_EQ(returns_in_robot(scan, {}).size(), 1U);
   for (const std::size_t beam : {0U, 1U, 2U, 5U}) EXPECT_TRUE(std::isnan(scan.ranges_m[beam])) << beam;
 }

@@ -122,6 +122,17 @@ TEST(Convert, RobotLaserCarriesBothPoses) {
   EXPECT_THAT(content, HasSubstr(" 0 1 2.5 1.5707963267948966 1 2 1.5707963267948966 0 0 0 0 0 12.5 "));
 }
 
+TEST(Convert, WrittenPosesAreNotReadBack) {
+  const TempFolder folder;
+  const LogPoses poses{{{1.0, 2.0, 0.5}, {-1e9, 2e9, 3.0}, {1e-300, 0.0, -3.0}}};
+  for (const LogFormat format : {LogFormat::kRawlog, LogFormat::kCarmen}) {
+    write_log(awkward_log(), folder.path("with"), format, &poses);
+    write_log(awkward_log(), folder.path("without"), format);
+    EXPECT_NE(test::read_gz(folder.path("with")), test::read_gz(folder.path("without")));
+    expect_same_points(read_log(folder.path("with")), read_log(folder.path("without")), 1e-300);
+  }
+}
+
 TEST(Convert, EndingGzCompressesTextFormats) {
   const TempFolder folder;
   write_log(flaser_log(), folder.path("a.nist.gz"), LogFormat::kNist);
