@@ -40,12 +40,17 @@ RotationMatch match_at_rotation(const MatchTarget& target, const Shape& query, c
     match.lcs.insert(match.lcs.end(), found.begin(), found.end());
   }
   match.spread = collinear_filter(match.lcs, options.filters);
-  match.segments = segment_filter(cut_into_segments(match.spread, options.filters), options.filters);
-  match.translation = segment_wise_translation(match.segments);
-  if (match.translation.num_correspondences > 0) {
-    const double limit_m = match.translation.mean_distance_m + options.overlap.slack_m;
-    match.overlap =
-        scan_overlap(partners_within(target.map, query, match.target_from_query(), limit_m, options.overlap));
+  for (Segments& segments : segment_filter(cut_into_segments(match.spread, options.filters), options.filters)) {
+    const SegmentTranslation translation = segment_wise_translation(segments);
+    const Pose2 target_from_query{translation.target_from_query_m.x(), translation.target_from_query_m.y(),
+                                  rotation_rad};
+    const double limit_m = translation.mean_distance_m + options.overlap.slack_m;
+    const ScanOverlap overlap =
+        scan_overlap(partners_within(target.map, query, target_from_query, limit_m, options.overlap));
+    if (match.translation.num_correspondences > 0 && overlap.num_points <= match.overlap.num_points) continue;
+    match.segments = std::move(segments);
+    match.translation = translation;
+    match.overlap = overlap;
   }
   return match;
 }

@@ -7,6 +7,7 @@ void make_strict_paper(MappingOptions& options) {
   options.shape.points = ShapePoints::kBeams;
   options.align.histogram.norm = HistogramNorm::kCount;
   options.align.lcs.target = LcsTarget::kConcatenated;
+  options.align.filters.main_segments = 1;
   options.align.overlap.rule = OverlapRule::kAny;
   options.align.icp.gate = IcpGate::kSlack;
 }

@@ -1,7 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "shapemap/match/filters.hpp"
 
 namespace shapemap {
+namespace {
+
+/// A segment in the part of the main one.
+struct MainSegment {
+  Point2 translation_m{0.0, 0.0};
+  std::vector<std::size_t> survivors;  ///< indices of the segments that are not much worse
+  std::size_t quality = 0;             ///< correspondences in them
+};
+
+MainSegment judged_as_main(const Correspondences& segment, const Segments& segments, const FilterOptions& options) {
+  MainSegment main;
+  const Correspondence* first = segment.data();
+  main.translation_m = mean_translation_m(first, first + segment.size());
+  const double own_distance_m = mean_distance_m(first, first + segment.size(), main.translation_m);
+  const double limit_m = options.segment_distance_factor * own_distance_m + options.segment_distance_slack_m;
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    const Correspondence* other = segments[s].data();
+    if (mean_distance_m(other, other + segments[s].size(), main.translation_m) > limit_m) continue;
+    main.quality += segments[s].size();
+    main.survivors.push_back(s);
+  }
+  return main;
+}
+
+}  // namespace
 
 Segments cut_into_segments(const Correspondences& correspondences, const FilterOptions& options) {
   Segments segments;
@@ -15,29 +42,26 @@ Segments cut_into_segments(const Correspondences& correspondences, const FilterO
   return segments;
 }
 
-Segments segment_filter(const Segments& segments, const FilterOptions& options) {
-  std::size_t best_quality = 0;
-  std::vector<std::size_t> best;
-  for (const Correspondences& main : segments) {
-    const Correspondence* first = main.data();
-    const Point2 translation_m = mean_translation_m(first, first + main.size());
-    const double main_distance_m = mean_distance_m(first, first + main.size(), translation_m);
-    const double limit_m = options.segment_distance_factor * main_distance_m + options.segment_distance_slack_m;
-    std::size_t quality = 0;
-    std::vector<std::size_t> kept;
-    for (std::size_t s = 0; s < segments.size(); ++s) {
-      const Correspondence* other = segments[s].data();
-      if (mean_distance_m(other, other + segments[s].size(), translation_m) > limit_m) continue;
-      quality += segments[s].size();
-      kept.push_back(s);
-    }
-    if (quality <= best_quality) continue;
-    best_quality = quality;
-    best = std::move(kept);
+std::vector<Segments> segment_filter(const Segments& segments, const FilterOptions& options) {
+  std::vector<MainSegment> mains;
+  mains.reserve(segments.size());
+  for (const Correspondences& main : segments) mains.push_back(judged_as_main(main, segments, options));
+  std::stable_sort(mains.begin(), mains.end(),
+                   [](const MainSegment& a, const MainSegment& b) { return a.quality > b.quality; });
+
+  std::vector<Segments> best;
+  std::vector<Point2> translations_m;
+  for (const MainSegment& main : mains) {
+    if (best.size() == static_cast<std::size_t>(options.main_segments)) break;
+    const bool known = std::any_of(translations_m.begin(), translations_m.end(), [&](const Point2& other) {
+      return (other - main.translation_m).norm() < options.segment_distance_slack_m;
+    });
+    if (known) continue;
+    translations_m.push_back(main.translation_m);
+    best.emplace_back();
+    for (const std::size_t s : main.survivors) best.back().push_back(segments[s]);
   }
-  Segments filtered;
-  for (const std::size_t s : best) filtered.push_back(segments[s]);
-  return filtered;
+  return best;
 }
 
 }  // namespace shapemap

@@ -14,6 +14,7 @@ struct FilterOptions {
   double segment_gap_m = 0.30;
   double segment_distance_factor = 2.0;
   double segment_distance_slack_m = 0.20;
+  int main_segments = 5;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -25,6 +26,8 @@ struct FilterOptions {
     visit(Field{"segment-distance-factor", "a segment may be this many times worse than the main one, plus", 0, 100},
           self.segment_distance_factor);
     visit(Field{"segment-distance-slack-m", "this much [m]", 0, 100}, self.segment_distance_slack_m);
+    visit(Field{"main-segments", "best main segments, with translations of their own, that go on to the overlap", 1, 1000},
+          self.main_segments);
   }
 };
 
@@ -40,8 +43,10 @@ using Segments = std::vector<Correspondences>;
 Segments cut_into_segments(const Correspondences& correspondences, const FilterOptions& options);
 
 /// For each segment as the main one: translates by its mean, drops the segments that are then much worse than the
-/// main one. The main segment that leaves most correspondences wins; its surviving segments are returned.
-Segments segment_filter(const Segments& segments, const FilterOptions& options);
+/// main one; the quality of the main segment is the number of correspondences left. Returns the surviving segments of
+/// the best main segments, best first. The paper goes on with the best alone (`main_segments = 1`); more of them let
+/// the scan overlap decide between translations that are `segment_distance_slack_m` or more apart.
+std::vector<Segments> segment_filter(const Segments& segments, const FilterOptions& options);
 
 /// A translation of the turned query, and what supports it.
 struct SegmentTranslation {
