@@ -61,7 +61,9 @@ class RayCaster:
         beside = [(start @ inwards < -NEAREST_M) & (end @ inwards < -NEAREST_M) for inwards in (right, left)]
         return (self._slant != 0.0) | ~(beside[0] | beside[1])
 
-    def _faces(self, ahead: Array, origin: Array, height_m: float, directions: Array, slopes: Array) -> Array:
+    def _faces(
+        self, ahead: NDArray[np.bool_], origin: Array, height_m: float, directions: Array, slopes: Array
+    ) -> Array:
         """Horizontal distances `[beams, faces ahead]`. A face that leans by s per metre of height is met where
         normal . (origin + t direction - start) = s (height + t slope)."""
         along, normal, slant = self._along[ahead], self._normal[ahead], self._slant[ahead]
