@@ -15,12 +15,12 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
+import numpy as np
 
-from shapemap_sim.pairs import STAGES, PairResult, evaluate_pairs, lost_run  # noqa: E402
-from shapemap_sim.rates import Rate, all_rates, markdown  # noqa: E402
-from shapemap_sim.simulation import consecutive_overlaps, simulate  # noqa: E402
-from simulate_arena import add_arena_arguments, number, options_from, write_files  # noqa: E402
+from shapemap_sim.pairs import STAGES, PairResult, evaluate_pairs, lost_run
+from shapemap_sim.rates import Rate, all_rates, markdown
+from shapemap_sim.simulation import consecutive_overlaps, simulate
+from simulate_arena import add_arena_arguments, number, options_from, write_files
 
 EXIT_OK = (0, 4)  # 4: map written, some positions not placed
 ROOT = Path(__file__).resolve().parent.parent
@@ -73,6 +73,7 @@ def run_mapper(command: list[str], report: Path, timeout_s: float) -> tuple[dict
 def save_failures(folder: Path, pairs: list[PairResult], simulation: Any, report: dict[str, Any]) -> None:
     """A picture of each pair that is not ok in the end."""
     from shapemap_sim.failure_picture import save_failure  # matplotlib only when pictures are asked for
+
     for pair in pairs:
         if pair.verdict(STAGES[-1]) != "ok":
             save_failure(folder / f"seed{pair.seed:03d}_pair{pair.index:02d}.png", pair, simulation, report)
@@ -85,9 +86,19 @@ def run_seed(seed: int, arguments: argparse.Namespace) -> Run:
     with tempfile.TemporaryDirectory(prefix=f"arena{seed}_") as name:
         folder = Path(name)
         write_files(folder / "arena", ["nist"], simulation, overlaps)
-        command = [str(arguments.cli), "--nist", str(folder / "arena.nist"), "--out", str(folder / "map.png"),
-                   "--trajectory", str(folder / "out.tum"), "--report", str(folder / "report.json"), "--quiet",
-                   *arguments.arg]
+        command = [
+            str(arguments.cli),
+            "--nist",
+            str(folder / "arena.nist"),
+            "--out",
+            str(folder / "map.png"),
+            "--trajectory",
+            str(folder / "out.tum"),
+            "--report",
+            str(folder / "report.json"),
+            "--quiet",
+            *arguments.arg,
+        ]
         report, fault = run_mapper(command, folder / "report.json", arguments.timeout_s)
     if report is None:
         return Run(seed, lost_run(seed, overlaps, fault), fault, None)
@@ -95,41 +106,77 @@ def run_seed(seed: int, arguments: argparse.Namespace) -> Run:
     if arguments.failures:
         save_failures(arguments.failures, pairs, simulation, report)
     seconds = report.get("seconds", {}).get("wall")
-    return Run(seed, pairs, "", float(seconds) if isinstance(seconds, (int, float)) else None)
+    return Run(seed, pairs, "", float(seconds) if isinstance(seconds, int | float) else None)
 
 
 def pair_dict(pair: PairResult) -> dict[str, Any]:
-    return {"seed": pair.seed, "index": pair.index, "overlap": pair.overlap, "reason": pair.reason,
-            "verdicts": {stage: pair.verdict(stage) for stage in STAGES},
-            "errors": {stage: asdict(e) for stage, e in pair.errors.items()} if pair.errors else None}
+    return {
+        "seed": pair.seed,
+        "index": pair.index,
+        "overlap": pair.overlap,
+        "reason": pair.reason,
+        "verdicts": {stage: pair.verdict(stage) for stage in STAGES},
+        "errors": {stage: asdict(e) for stage, e in pair.errors.items()} if pair.errors else None,
+    }
 
 
 def rate_dict(rate: Rate) -> dict[str, Any]:
     """Medians and shares of nothing become null: JSON has no NaN."""
     fields = {**asdict(rate), "num_failures": rate.num_failures, "failure_ratio": rate.failure_ratio}
-    return {key: None if value != value else value for key, value in fields.items()}
+    return {key: None if isinstance(value, float) and np.isnan(value) else value for key, value in fields.items()}
 
 
 def as_json(runs: list[Run], rates: list[Rate], arguments: argparse.Namespace) -> str:
     options = {key: str(value) if isinstance(value, Path) else value for key, value in vars(arguments).items()}
-    return json.dumps({"options": options, "rates": [rate_dict(rate) for rate in rates],
-                       "runs": [{"seed": run.seed, "fault": run.fault, "seconds": run.seconds} for run in runs],
-                       "pairs": [pair_dict(pair) for run in runs for pair in run.pairs]}, indent=1) + "\n"
+    return (
+        json.dumps(
+            {
+                "options": options,
+                "rates": [rate_dict(rate) for rate in rates],
+                "runs": [{"seed": run.seed, "fault": run.fault, "seconds": run.seconds} for run in runs],
+                "pairs": [pair_dict(pair) for run in runs for pair in run.pairs],
+            },
+            indent=1,
+        )
+        + "\n"
+    )
 
 
 def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLE,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", type=parse_seeds, default=parse_seeds("0-39"), metavar="LIST",
-                        help="seeds of the arenas, such as 0-39 or 1,5,8 (default 0-39)")
-    parser.add_argument("--cli", type=Path, default=ROOT / "build/release/bin/shapemap-cli", metavar="FILE",
-                        help="the mapper (default build/release/bin/shapemap-cli)")
-    parser.add_argument("--arg", action="append", default=[], metavar="ARG",
-                        help="passed on to the mapper; repeat for more, such as --arg=--rotation-range-deg --arg=5")
-    parser.add_argument("--jobs", type=number(1, 256, int), default=2, metavar="N",
-                        help="arenas at the same time (default %(default)s)")
-    parser.add_argument("--timeout-s", type=number(1, 86400), default=300.0, metavar="S",
-                        help="longest time for one arena (default %(default)g)")
+    parser = argparse.ArgumentParser(
+        description=__doc__, epilog=EXAMPLE, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument(
+        "--seeds",
+        type=parse_seeds,
+        default=parse_seeds("0-39"),
+        metavar="LIST",
+        help="seeds of the arenas, such as 0-39 or 1,5,8 (default 0-39)",
+    )
+    parser.add_argument(
+        "--cli",
+        type=Path,
+        default=ROOT / "build/release/bin/shapemap-cli",
+        metavar="FILE",
+        help="the mapper (default build/release/bin/shapemap-cli)",
+    )
+    parser.add_argument(
+        "--arg",
+        action="append",
+        default=[],
+        metavar="ARG",
+        help="passed on to the mapper; repeat for more, such as --arg=--rotation-range-deg --arg=5",
+    )
+    parser.add_argument(
+        "--jobs", type=number(1, 256, int), default=2, metavar="N", help="arenas at the same time (default %(default)s)"
+    )
+    parser.add_argument(
+        "--timeout-s",
+        type=number(1, 86400),
+        default=300.0,
+        metavar="S",
+        help="longest time for one arena (default %(default)g)",
+    )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write rates and every pair")
     parser.add_argument("--failures", type=Path, metavar="DIR", help="write a picture of each pair that failed")
     add_arena_arguments(parser)

@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .clutter import leaves_free, outline_points, scatter
-from .maze import MazeOptions, cell_centres, doorway_panels, outer_panels
-from .maze import plan_openings, plan_route, wall_panels
+from .maze import MazeOptions, cell_centres, doorway_panels, outer_panels, plan_openings, plan_route, wall_panels
 from .poses import Array, rotate
 from .streams import stream
 from .world import World, panel_faces
@@ -28,8 +27,9 @@ class ArenaOptions:
     turned_panel_share: float = 0.15
 
 
-def turn_panel(panel: Array, route: Array, options: ArenaOptions, size_m: tuple[float, float],
-               rng: np.random.Generator) -> Array:
+def turn_panel(
+    panel: Array, route: Array, options: ArenaOptions, size_m: tuple[float, float], rng: np.random.Generator
+) -> Array:
     """The panel `[2, 2]` swung about one end by 8 to 30 degrees, or as it was when that would block the route."""
     angle = np.deg2rad(rng.uniform(8.0, 30.0)) * rng.choice([-1.0, 1.0])
     swung = np.stack([panel[0], panel[0] + rotate(panel[1] - panel[0], angle)])
@@ -57,6 +57,6 @@ def build_world(seed: int, options: ArenaOptions) -> World:
         faces = panel_faces(panel[0], panel[1], "wall")
         if leaves_free(outline_points(faces, []), route, options.clearance_m, size):
             world.faces += faces
-    num_objects = int(round(options.clutter * options.objects_at_full_clutter))
+    num_objects = round(options.clutter * options.objects_at_full_clutter)
     scatter(num_objects, world, options.clearance_m, stream(seed, "clutter"))
     return world

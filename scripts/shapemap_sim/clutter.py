@@ -9,8 +9,18 @@ from collections.abc import Callable
 import numpy as np
 
 from .poses import Array, rotate
-from .world import Arc, Face, World, arc_outline, distance_to_polyline, face_outline, panel_faces, polygon_faces
-from .world import rectangle_corners, squared_distances
+from .world import (
+    Arc,
+    Face,
+    World,
+    arc_outline,
+    distance_to_polyline,
+    face_outline,
+    panel_faces,
+    polygon_faces,
+    rectangle_corners,
+    squared_distances,
+)
 
 Objects = tuple[list[Face], list[Arc]]
 Maker = Callable[[Array, float, np.random.Generator], Objects]
@@ -75,21 +85,28 @@ def make_step_field(centre: Array, angle_rad: float, rng: np.random.Generator) -
 
 
 MAKERS: list[tuple[Maker, float]] = [
-    (make_box, 0.24), (make_rubble, 0.20), (make_slanted_board, 0.14), (make_odd_wall, 0.12), (make_barrel, 0.10),
-    (make_curved_wall, 0.08), (make_tubes, 0.06), (make_step_field, 0.06),
+    (make_box, 0.24),
+    (make_rubble, 0.20),
+    (make_slanted_board, 0.14),
+    (make_odd_wall, 0.12),
+    (make_barrel, 0.10),
+    (make_curved_wall, 0.08),
+    (make_tubes, 0.06),
+    (make_step_field, 0.06),
 ]
 
 
-def outline_points(faces: list[Face], arcs: list[Arc]) -> Array:
-    """Points `[n, 2]` all around the objects, on the floor and at their tops, 5 cm apart or less."""
-    pieces = [np.empty((0, 2))]
-    for face in faces:
-        for height in (face.bottom_m, face.top_m):
-            start, end = face_outline(face, height)
-            num = max(2, int(np.ceil(np.hypot(*(end - start)) / 0.05)) + 1)
-            pieces.append(np.linspace(start, end, num))
-    pieces += [arc_outline(arc) for arc in arcs]
-    return np.concatenate(pieces)
+def outline_points(faces: list[Face], arcs: list[Arc], step_m: float = 0.05) -> Array:
+    """Points `[n, 2]` all around the objects, on the floor and, where a face leans, at its top, at most about
+    `step_m` apart."""
+    pieces = [arc_outline(arc) for arc in arcs]
+    if faces:
+        leaning = [face for face in faces if face.slant != 0.0]
+        ends = np.array([(f.start, f.end) for f in faces] + [face_outline(f, f.top_m) for f in leaning])
+        longest = np.hypot(*(ends[:, 1] - ends[:, 0]).T).max()
+        t = np.linspace(0.0, 1.0, max(2, int(np.ceil(longest / step_m)) + 1))[:, None, None]
+        pieces.append(((1.0 - t) * ends[:, 0] + t * ends[:, 1]).reshape(-1, 2))
+    return np.concatenate([np.empty((0, 2)), *pieces])
 
 
 def leaves_free(points: Array, route: Array, clearance_m: float, size_m: tuple[float, float]) -> bool:

@@ -7,16 +7,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
 
-matplotlib.use("Agg")
-import numpy as np  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
-
-from .pairs import PairResult, pair_truth, pose_from  # noqa: E402
-from .poses import Array, compose, transform  # noqa: E402
-from .sensor import points_of  # noqa: E402
-from .simulation import Simulation  # noqa: E402
+from .pairs import PairResult, pair_truth, pose_from
+from .poses import Array, compose, transform
+from .sensor import points_of
+from .simulation import Simulation
 
 
 def placed_points(poses: Array, points: list[Array]) -> Array:
@@ -44,8 +41,10 @@ def save_failure(path: Path, pair: PairResult, simulation: Simulation, report: M
     """Reference scan grey, query at its true pose blue, at its estimated pose (if there is one) red."""
     truth, beams = pair_truth(simulation, pair.index), simulation.options.sensor.beam_angles_rad()
     reference = [points_of(ranges, beams) for ranges in simulation.ranges[pair.index - 1]]
-    clouds = [(placed_points(truth.query_from_nominal, reference), "#909090", "reference scan"),
-              (placed_points(truth.ref_from_sub_scan, truth.points), "#2060d0", "query, true pose")]
+    clouds = [
+        (placed_points(truth.query_from_nominal, reference), "#909090", "reference scan"),
+        (placed_points(truth.ref_from_sub_scan, truth.points), "#2060d0", "query, true pose"),
+    ]
     if pair.errors is not None:
         entry = next(e for e in report["positions"] if e["index"] == pair.index)
         clouds.append((found_points(entry["alignment"], simulation, pair.index), "#d02020", "query, estimated pose"))

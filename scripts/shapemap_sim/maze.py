@@ -95,8 +95,9 @@ def plan_openings(options: MazeOptions, rng: np.random.Generator) -> set[Opening
     return openings
 
 
-def cheapest_path(start: Cell, goal: Cell, openings: set[Opening], costs: dict[Cell, float],
-                  options: MazeOptions) -> list[Cell]:
+def cheapest_path(
+    start: Cell, goal: Cell, openings: set[Opening], costs: dict[Cell, float], options: MazeOptions
+) -> list[Cell]:
     """Dijkstra's path from start to goal; entering a cell costs `costs[cell]`."""
     queue, came_from, spent = [(0.0, start)], {start: start}, {start: 0.0}
     while queue:
@@ -179,7 +180,8 @@ def outer_panels(options: MazeOptions, num_doors: int, rng: np.random.Generator)
     """Ends `[n, 2, 2]` of the panels around the hall, less a few doors to the outside."""
     columns, rows = options.columns, options.rows
     low = [[(x, 0), (x + 1, 0)] for x in range(columns)] + [[(0, y), (0, y + 1)] for y in range(rows)]
-    high = [[(x, rows), (x + 1, rows)] for x in range(columns)] + [[(columns, y), (columns, y + 1)] for y in range(rows)]
+    high = [[(x, rows), (x + 1, rows)] for x in range(columns)]
+    high += [[(columns, y), (columns, y + 1)] for y in range(rows)]
     panels = np.array(low + high, dtype=float)
     doors = rng.choice(len(panels), size=num_doors, replace=False)
     return np.delete(panels, doors, axis=0) * options.cell_m

@@ -61,20 +61,12 @@ def pose_error(estimate: Array, truth: Array) -> tuple[float, float]:
     return float(np.hypot(difference[0], difference[1])), float(abs(np.rad2deg(difference[2])))
 
 
-def fit_rigid(to_points: Array, from_points: Array) -> Array:
-    """The pose `[3]` that takes points `[n, 2]` to their partners `[n, 2]` with the least squared error."""
-    to_mean, from_mean = to_points.mean(axis=0), from_points.mean(axis=0)
-    a, b = from_points - from_mean, to_points - to_mean
-    theta = np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum())
-    turned = transform(np.array([0.0, 0.0, theta]), from_mean[None])[0]
-    return np.array([*(to_mean - turned), theta])
-
-
 def mean_displacement(estimates: Array, truths: Array, points: list[Array]) -> float:
     """Mean over sub-scans of the mean distance [m] between a sub-scan's points `[n, 2]` under its estimated and under
     its true pose (`[s, 3]` each); sub-scans without points do not count."""
-    distances = [np.hypot(*(transform(e, p) - transform(t, p)).T).mean()
-                 for e, t, p in zip(estimates, truths, points) if len(p)]
+    distances = [
+        np.hypot(*(transform(e, p) - transform(t, p)).T).mean() for e, t, p in zip(estimates, truths, points) if len(p)
+    ]
     return float(np.mean(distances)) if distances else 0.0
 
 
@@ -95,19 +87,19 @@ def pair_truth(simulation: Simulation, index: int) -> PairTruth:
     ref_from_map = inverse(run.map_from_robot[index - 1])
     nominal = np.zeros((len(run.nominal_headings_rad), 3))
     nominal[:, 2] = run.nominal_headings_rad
-    return PairTruth(compose(ref_from_map, run.map_from_robot[index]),
-                     compose(ref_from_map, run.map_from_sub_scan[index]), nominal,
-                     [points_of(ranges, beams) for ranges in simulation.ranges[index]])
+    return PairTruth(
+        compose(ref_from_map, run.map_from_robot[index]),
+        compose(ref_from_map, run.map_from_sub_scan[index]),
+        nominal,
+        [points_of(ranges, beams) for ranges in simulation.ranges[index]],
+    )
 
 
 def stage_error(ref_from_query: Array, corrections: Array, truth: PairTruth) -> StageError:
-    """Errors of a pose `[3]` with corrections `[s, 3]` of the sub-scans. The pose that counts is the one that fits
-    the corrected points best, so that corrections all one way count as a better or worse pose."""
-    query_from_sub_scan = compose(corrections, truth.query_from_nominal)
-    estimates = compose(ref_from_query, query_from_sub_scan)
-    query = [transform(n, p) for n, p in zip(truth.query_from_nominal, truth.points)]
-    ref = [transform(e, p) for e, p in zip(estimates, truth.points)]
-    error_m, error_deg = pose_error(fit_rigid(np.concatenate(ref), np.concatenate(query)), truth.ref_from_query)
+    """Errors of a pose `[3]` with corrections `[s, 3]` of the sub-scans. The pose that counts has the mean of the
+    corrections in it, so that corrections all one way make it better or worse."""
+    error_m, error_deg = pose_error(compose(ref_from_query, corrections.mean(axis=0)), truth.ref_from_query)
+    estimates = compose(ref_from_query, compose(corrections, truth.query_from_nominal))
     return StageError(error_m, error_deg, mean_displacement(estimates, truth.ref_from_sub_scan, truth.points))
 
 
@@ -119,8 +111,9 @@ def stage_errors(alignment: Mapping[str, Any], truth: PairTruth) -> dict[str, St
     if corrections.shape != none.shape:
         raise ValueError(f"the report has {len(corrections)} sub-scans where the log has {len(none)}")
     stages = (("shape_ref_from_query", none), ("icp_ref_from_query", none), ("ref_from_query", corrections))
-    return {name: stage_error(pose_from(alignment[key]), applied, truth)
-            for name, (key, applied) in zip(STAGES, stages)}
+    return {
+        name: stage_error(pose_from(alignment[key]), applied, truth) for name, (key, applied) in zip(STAGES, stages)
+    }
 
 
 def evaluate_pairs(simulation: Simulation, report: Mapping[str, Any], overlaps: Array) -> list[PairResult]:

@@ -5,21 +5,27 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
 
-matplotlib.use("Agg")
-from matplotlib.axes import Axes  # noqa: E402
-from matplotlib.collections import LineCollection  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
+from .poses import transform
+from .sensor import points_of
+from .simulation import Simulation
+from .world import World, arc_outline, face_outline
 
-from .sensor import points_of  # noqa: E402
-from .poses import transform  # noqa: E402
-from .simulation import Simulation  # noqa: E402
-from .world import World, arc_outline, face_outline  # noqa: E402
-
-COLOURS = {"hall": "#202020", "wall": "#202020", "odd wall": "#7a4a1e", "box": "#c07820", "rubble": "#8a8a5a",
-           "board": "#d04848", "barrel": "#2878b8", "tube": "#28a0a0", "curved wall": "#7848b0",
-           "step field": "#389048"}
+COLOURS = {
+    "hall": "#202020",
+    "wall": "#202020",
+    "odd wall": "#7a4a1e",
+    "box": "#c07820",
+    "rubble": "#8a8a5a",
+    "board": "#d04848",
+    "barrel": "#2878b8",
+    "tube": "#28a0a0",
+    "curved wall": "#7848b0",
+    "step field": "#389048",
+}
 
 
 def draw_world(axes: Axes, world: World, height_m: float) -> None:

@@ -47,12 +47,22 @@ class Rate:
 
 def rate(band: str, stage: str, pairs: list[PairResult]) -> Rate:
     verdicts = [pair.verdict(stage) for pair in pairs]
-    good = np.array([(e.error_m, e.error_deg, e.displacement_m) for pair in pairs
-                     if pair.errors and (e := pair.errors[stage]).ok]).reshape(-1, 3)
+    good = np.array(
+        [(e.error_m, e.error_deg, e.displacement_m) for pair in pairs if pair.errors and (e := pair.errors[stage]).ok]
+    ).reshape(-1, 3)
     medians = np.median(good, axis=0) if len(good) else np.full(3, np.nan)
     wrong, rejected = verdicts.count("wrong"), verdicts.count("rejected")
-    return Rate(band, stage, len(pairs), wrong, rejected, wilson_interval(wrong + rejected, len(pairs)),
-                float(medians[0]), float(medians[1]), float(medians[2]))
+    return Rate(
+        band,
+        stage,
+        len(pairs),
+        wrong,
+        rejected,
+        wilson_interval(wrong + rejected, len(pairs)),
+        float(medians[0]),
+        float(medians[1]),
+        float(medians[2]),
+    )
 
 
 def band_of(overlap: float) -> str:
@@ -70,14 +80,22 @@ def all_rates(pairs: list[PairResult]) -> list[Rate]:
 
 def markdown(rates: list[Rate]) -> str:
     """The rows as a Markdown table."""
-    lines = ["| overlap | stage | pairs | failures | rate (95 % interval) | wrong | rejected | median error "
-             "| median point displacement |", "|---|---|---|---|---|---|---|---|---|"]
+    lines = [
+        "| overlap | stage | pairs | failures | rate (95 % interval) | wrong | rejected | median error "
+        "| median point displacement |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
     for r in rates:
         if not r.num_pairs:
             lines.append(f"| {r.band} | {r.stage} | 0 | | | | | | |")
             continue
         share = f"{100 * r.failure_ratio:.1f} % ({100 * r.interval[0]:.1f}-{100 * r.interval[1]:.1f})"
-        lines.append(f"| {r.band} | {r.stage} | {r.num_pairs} | {r.num_failures} | {share} | {r.num_wrong} "
-                     f"| {r.num_rejected} | {100 * r.median_m:.1f} cm, {r.median_deg:.2f} deg "
-                     f"| {100 * r.median_displacement_m:.1f} cm |")
+        error = f"{100 * r.median_m:.1f} cm, {r.median_deg:.2f} deg"
+        displacement = f"{100 * r.median_displacement_m:.1f} cm"
+        if r.num_failures == r.num_pairs:
+            error = displacement = "-"
+        lines.append(
+            f"| {r.band} | {r.stage} | {r.num_pairs} | {r.num_failures} | {share} | {r.num_wrong} "
+            f"| {r.num_rejected} | {error} | {displacement} |"
+        )
     return "\n".join(lines)

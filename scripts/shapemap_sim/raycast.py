@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .poses import Array
 from .world import World
@@ -18,7 +19,7 @@ class RayCaster:
     def __init__(self, world: World) -> None:
         starts = np.array([face.start for face in world.faces], dtype=float).reshape(-1, 2)
         ends = np.array([face.end for face in world.faces], dtype=float).reshape(-1, 2)
-        self._start = starts
+        self._start, self._end = starts, ends
         self._length = np.hypot(*(ends - starts).T)
         self._along = (ends - starts) / self._length[:, None]
         self._normal = np.stack([-self._along[:, 1], self._along[:, 0]], axis=-1)
@@ -37,9 +38,10 @@ class RayCaster:
         of the map and climbs `slopes[i]` metres per horizontal metre.
         """
         directions = np.stack([np.cos(angles_rad), np.sin(angles_rad)], axis=-1)
-        nearest = np.minimum(self._floor(height_m, slopes), np.inf)
-        if len(self._length):
-            nearest = np.minimum(nearest, self._faces(origin, height_m, directions, slopes).min(axis=1))
+        nearest = self._floor(height_m, slopes)
+        ahead = self._ahead(origin, angles_rad)
+        if ahead.any():
+            nearest = np.minimum(nearest, self._faces(ahead, origin, height_m, directions, slopes).min(axis=1))
         if len(self._radius):
             nearest = np.minimum(nearest, self._arcs(origin, height_m, directions, slopes).min(axis=1))
         return nearest * np.sqrt(1.0 + slopes**2)
@@ -49,17 +51,30 @@ class RayCaster:
         """Horizontal distance [m] at which a descending beam meets the floor."""
         return np.where(slopes < -PARALLEL, height_m / np.maximum(-slopes, PARALLEL), np.inf)
 
-    def _faces(self, origin: Array, height_m: float, directions: Array, slopes: Array) -> Array:
-        """Horizontal distances `[beams, faces]`. A face that leans by s per metre of height is met where
+    def _ahead(self, origin: Array, angles_rad: Array) -> NDArray[np.bool_]:
+        """`[faces]` of bool: False for faces that lie wholly beside the wedge of the beams; saves most of the work."""
+        first, last = angles_rad.min(), angles_rad.max()
+        if last - first > np.pi - PARALLEL:
+            return np.ones(len(self._length), dtype=bool)
+        right, left = np.array([-np.sin(first), np.cos(first)]), np.array([np.sin(last), -np.cos(last)])
+        start, end = self._start - origin, self._end - origin
+        beside = [(start @ inwards < -NEAREST_M) & (end @ inwards < -NEAREST_M) for inwards in (right, left)]
+        return (self._slant != 0.0) | ~(beside[0] | beside[1])
+
+    def _faces(
+        self, ahead: NDArray[np.bool_], origin: Array, height_m: float, directions: Array, slopes: Array
+    ) -> Array:
+        """Horizontal distances `[beams, faces ahead]`. A face that leans by s per metre of height is met where
         normal . (origin + t direction - start) = s (height + t slope)."""
-        offset = origin - self._start
-        numerator = self._slant * height_m - (self._normal * offset).sum(axis=1)
-        denominator = directions @ self._normal.T - slopes[:, None] * self._slant
+        along, normal, slant = self._along[ahead], self._normal[ahead], self._slant[ahead]
+        offset = origin - self._start[ahead]
+        numerator = slant * height_m - (normal * offset).sum(axis=1)
+        denominator = directions @ normal.T - slopes[:, None] * slant
         with np.errstate(divide="ignore", invalid="ignore"):
             t = np.where(np.abs(denominator) > PARALLEL, numerator / denominator, np.inf)
-            u = (self._along * offset).sum(axis=1) + t * (directions @ self._along.T)
+            u = (along * offset).sum(axis=1) + t * (directions @ along.T)
             z = height_m + t * slopes[:, None]
-            met = (t > NEAREST_M) & (u >= 0.0) & (u <= self._length) & _between(z, self._face_z)
+            met = (t > NEAREST_M) & (u >= 0.0) & (u <= self._length[ahead]) & _between(z, self._face_z[ahead])
         return np.where(met, t, np.inf)
 
     def _arcs(self, origin: Array, height_m: float, directions: Array, slopes: Array) -> Array:
@@ -78,5 +93,5 @@ class RayCaster:
         return nearest
 
 
-def _between(z: Array, limits: Array) -> Array:
+def _between(z: Array, limits: Array) -> NDArray[np.bool_]:
     return (z >= limits[:, 0]) & (z <= limits[:, 1])

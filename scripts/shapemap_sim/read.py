@@ -39,7 +39,10 @@ def read_scan_log(path: Path) -> ScanLog:
     if not lines or lines[0] != ["shapemap-scans", "1"]:
         raise ValueError(f"{path}: not a shapemap scan log, version 1")
     sensor: dict[str, float] = {}
-    times, references, headings, ranges = [], [], [], []
+    times: list[float] = []
+    references: list[list[float]] = []
+    headings: list[list[float]] = []
+    ranges: list[list[list[float]]] = []
     for fields in lines[1:]:
         if fields[0] == "units" and fields[1:] != ["m", "deg"]:
             raise ValueError(f"{path}: expected units m deg, found {' '.join(fields[1:])}")
@@ -50,10 +53,16 @@ def read_scan_log(path: Path) -> ScanLog:
             headings.append([])
             ranges.append([])
             if len(fields) == 6 and fields[2] == "reference":
-                references.append([float(fields[3]), float(fields[4]), np.deg2rad(float(fields[5]))])
+                references.append([float(fields[3]), float(fields[4]), float(np.deg2rad(float(fields[5])))])
         elif fields[0] == "scan":
-            headings[-1].append(np.deg2rad(float(fields[3])))
+            headings[-1].append(float(np.deg2rad(float(fields[3]))))
             ranges[-1].append([_reading(text, sensor["max_range"]) for text in fields[5:]])
     angles = np.deg2rad(sensor["first_angle"] + sensor["angle_step"] * np.arange(int(sensor["beams"])))
-    return ScanLog(np.array(times), np.array(references) if len(references) == len(times) else None,
-                   np.array(headings), angles, sensor["max_range"], np.array(ranges))
+    return ScanLog(
+        np.array(times),
+        np.array(references) if len(references) == len(times) else None,
+        np.array(headings),
+        angles,
+        sensor["max_range"],
+        np.array(ranges),
+    )

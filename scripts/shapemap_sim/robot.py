@@ -57,8 +57,10 @@ def stops_along(route: Array, distances_m: Array) -> Array:
         away = np.hypot(*(points[index:] - points[index]).T)
         reached = np.flatnonzero(away >= distance)
         if not len(reached):
-            raise ValueError(f"the route has room for {len(stops)} positions at this spacing, "
-                             f"not for {len(distances_m) + 1}: ask for fewer positions or a smaller spacing")
+            raise ValueError(
+                f"the route has room for {len(stops)} positions at this spacing, "
+                f"not for {len(distances_m) + 1}: ask for fewer positions or a smaller spacing"
+            )
         index += int(reached[0])
         stops.append(points[index])
     return np.array(stops)
@@ -79,11 +81,13 @@ def drive(seed: int, route: Array, options: RobotOptions) -> Drive:
     sigma = np.deg2rad(options.sub_scan_heading_sigma_deg)
     error[..., 2] = sigma * stream(seed, "sub-scan heading").standard_normal((num, len(turns)))
     robot_from_sub_scan = compose(error, nominal)
-    return Drive(timestamps_s=options.seconds_per_position * np.arange(num),
-                 map_from_robot=map_from_robot,
-                 map_from_sub_scan=compose(map_from_robot[:, None, :], robot_from_sub_scan),
-                 gradient=draw_tilt(seed, num, len(turns), options),
-                 nominal_headings_rad=turns)
+    return Drive(
+        timestamps_s=options.seconds_per_position * np.arange(num, dtype=np.float64),
+        map_from_robot=map_from_robot,
+        map_from_sub_scan=compose(map_from_robot[:, None, :], robot_from_sub_scan),
+        gradient=draw_tilt(seed, num, len(turns), options),
+        nominal_headings_rad=turns,
+    )
 
 
 def draw_tilt(seed: int, num_positions: int, num_sub_scans: int, options: RobotOptions) -> Array:

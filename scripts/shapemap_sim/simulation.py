@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 
@@ -45,8 +46,10 @@ def scan_in_map(simulation: Simulation, position: int) -> Array:
     """Points `[n, 2]` of a whole position in the map, at its reference pose and nominal headings: what a mapper with
     perfect poses would draw."""
     run, beams = simulation.drive, simulation.options.sensor.beam_angles_rad()
-    points = [transform([0.0, 0.0, heading], points_of(ranges, beams))
-              for heading, ranges in zip(run.nominal_headings_rad, simulation.ranges[position])]
+    points = [
+        transform([0.0, 0.0, heading], points_of(ranges, beams))
+        for heading, ranges in zip(run.nominal_headings_rad, simulation.ranges[position])
+    ]
     return transform(run.map_from_robot[position], np.concatenate(points))
 
 
@@ -68,7 +71,7 @@ def travel_visible(simulation: Simulation) -> Array:
     """`[p - 1]` of bool: whether each position sees the next one along a straight line."""
     caster, stops = RayCaster(simulation.world), simulation.drive.map_from_robot[:, :2]
     visible = []
-    for here, there in zip(stops[:-1], stops[1:]):
+    for here, there in pairwise(stops):
         step = there - here
         free = caster.cast(here, simulation.options.sensor.height_m, np.arctan2(step[1:], step[:1]), np.zeros(1))[0]
         visible.append(free > np.hypot(*step))

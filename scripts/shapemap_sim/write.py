@@ -29,15 +29,21 @@ def range_text(range_m: float) -> str:
 
 
 def sensor_line(sensor: SensorOptions) -> str:
-    return (f"sensor {SENSOR_NAME} beams {sensor.num_beams} first_angle {sensor.first_angle_deg:g} "
-            f"angle_step {sensor.angle_step_deg:g} max_range {sensor.max_range_m:g}")
+    return (
+        f"sensor {SENSOR_NAME} beams {sensor.num_beams} first_angle {sensor.first_angle_deg:g} "
+        f"angle_step {sensor.angle_step_deg:g} max_range {sensor.max_range_m:g}"
+    )
 
 
 def nist_text(simulation: Simulation) -> str:
     """The run as a scan log, version 1."""
     run = simulation.drive
-    lines = ["shapemap-scans 1", f"# simulated rescue arena, seed {simulation.options.seed}", "units m deg",
-             sensor_line(simulation.options.sensor)]
+    lines = [
+        "shapemap-scans 1",
+        f"# simulated rescue arena, seed {simulation.options.seed}",
+        "units m deg",
+        sensor_line(simulation.options.sensor),
+    ]
     for time, pose, scans in zip(run.timestamps_s, run.map_from_robot, simulation.ranges):
         lines.append(f"position {time:.3f} reference {pose[0]:.6f} {pose[1]:.6f} {np.rad2deg(pose[2]):.6f}")
         for heading, ranges in zip(run.nominal_headings_rad, scans):
@@ -62,10 +68,20 @@ def truth_text(simulation: Simulation, overlaps: Array) -> str:
     """Exact poses in the map of every position and of every sub-scan, as JSON."""
     run, positions = simulation.drive, []
     for k, time in enumerate(run.timestamps_s):
-        sub_scans = [{"nominal_heading_deg": float(np.rad2deg(heading)), "map_from_sub_scan": pose_dict(pose),
-                      "gradient": [float(g) for g in gradient]}
-                     for heading, pose, gradient in zip(run.nominal_headings_rad, run.map_from_sub_scan[k],
-                                                        run.gradient[k])]
-        positions.append({"timestamp_s": float(time), "map_from_robot": pose_dict(run.map_from_robot[k]),
-                          "overlap_with_previous": float(overlaps[k - 1]) if k else None, "sub_scans": sub_scans})
+        sub_scans = [
+            {
+                "nominal_heading_deg": float(np.rad2deg(heading)),
+                "map_from_sub_scan": pose_dict(pose),
+                "gradient": [float(g) for g in gradient],
+            }
+            for heading, pose, gradient in zip(run.nominal_headings_rad, run.map_from_sub_scan[k], run.gradient[k])
+        ]
+        positions.append(
+            {
+                "timestamp_s": float(time),
+                "map_from_robot": pose_dict(run.map_from_robot[k]),
+                "overlap_with_previous": float(overlaps[k - 1]) if k else None,
+                "sub_scans": sub_scans,
+            }
+        )
     return json.dumps({"seed": simulation.options.seed, "positions": positions}, indent=1) + "\n"

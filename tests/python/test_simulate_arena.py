@@ -16,15 +16,29 @@ from shapemap_sim.read import read_scan_log
 from shapemap_sim.robot import RobotOptions, stops_along
 from shapemap_sim.sensor import SensorOptions, exact_ranges, measure, mix_pixels, points_of
 from shapemap_sim.simulation import Simulation, SimulationOptions, consecutive_overlaps, overlap, simulate
-from shapemap_sim.world import Arc, Face, World, arc_outline, distance_to_polyline, face_outline, polygon_faces
-from shapemap_sim.world import rectangle_corners
+from shapemap_sim.world import (
+    Arc,
+    Face,
+    World,
+    arc_outline,
+    distance_to_polyline,
+    face_outline,
+    polygon_faces,
+    rectangle_corners,
+)
 from shapemap_sim.write import nist_text, tum_text
 
 EXACT = SimulationOptions(
     seed=3,
-    robot=RobotOptions(num_positions=4, sub_scan_heading_sigma_deg=0.0, sub_scan_centre_sigma_m=0.0,
-                       tilt_sigma_deg=0.0, heading_uncertainty_deg=180.0),
-    sensor=SensorOptions(range_sigma_m=0.0, drop_out_share=0.0))
+    robot=RobotOptions(
+        num_positions=4,
+        sub_scan_heading_sigma_deg=0.0,
+        sub_scan_centre_sigma_m=0.0,
+        tilt_sigma_deg=0.0,
+        heading_uncertainty_deg=180.0,
+    ),
+    sensor=SensorOptions(range_sigma_m=0.0, drop_out_share=0.0),
+)
 
 
 @pytest.fixture(scope="module")
@@ -37,8 +51,9 @@ def exact() -> Simulation:
     return simulate(EXACT)
 
 
-def cast(world: World, origin: tuple[float, float], angles_deg: list[float], slope: float = 0.0,
-         height_m: float = 0.35) -> np.ndarray:
+def cast(
+    world: World, origin: tuple[float, float], angles_deg: list[float], slope: float = 0.0, height_m: float = 0.35
+) -> np.ndarray:
     angles = np.deg2rad(angles_deg)
     return RayCaster(world).cast(np.array(origin), height_m, angles, np.full(len(angles), slope))
 
@@ -69,8 +84,9 @@ def test_a_slanted_board_recedes_with_the_height_of_the_beam() -> None:
     board = World((9.0, 9.0), [Face((2.0, 1.0), (2.0, -1.0), 0.0, 1.0, slant=0.5)])  # leans towards +x
     np.testing.assert_allclose(cast(board, (0.0, 0.0), [0.0], height_m=0.4), [2.2], rtol=1e-12)
     # A climbing beam meets the plane x = 2 + 0.5 z at x = 2.2 / (1 - 0.05), measured along the beam.
-    np.testing.assert_allclose(cast(board, (0.0, 0.0), [0.0], slope=0.1, height_m=0.4),
-                               [2.2 / 0.95 * np.sqrt(1.01)], rtol=1e-12)
+    np.testing.assert_allclose(
+        cast(board, (0.0, 0.0), [0.0], slope=0.1, height_m=0.4), [2.2 / 0.95 * np.sqrt(1.01)], rtol=1e-12
+    )
 
 
 def test_low_objects_are_passed_over() -> None:
@@ -87,10 +103,11 @@ def test_tilt_clips_the_floor() -> None:
 
 
 def test_more_tilt_shortens_the_ranges_of_a_run() -> None:
-    def longest(tilt_deg: float) -> float:
+    def far_share(tilt_deg: float) -> float:
         robot = replace(EXACT.robot, tilt_sigma_deg=tilt_deg)
-        return float(np.nanmax(simulate(replace(EXACT, robot=robot)).ranges))
-    assert longest(15.0) < longest(0.0)
+        return float((simulate(replace(EXACT, robot=robot)).ranges > 2.0).mean())
+
+    assert far_share(15.0) < 0.6 * far_share(0.0)
 
 
 def test_same_seed_same_files_other_seed_other_files(arena: Simulation) -> None:
@@ -99,8 +116,9 @@ def test_same_seed_same_files_other_seed_other_files(arena: Simulation) -> None:
 
 
 def test_components_do_not_disturb_each_other(arena: Simulation) -> None:
-    options = SimulationOptions(seed=1, robot=RobotOptions(spacing_m=1.0, tilt_sigma_deg=0.0),
-                                sensor=SensorOptions(range_sigma_m=0.05))
+    options = SimulationOptions(
+        seed=1, robot=RobotOptions(spacing_m=1.0, tilt_sigma_deg=0.0), sensor=SensorOptions(range_sigma_m=0.05)
+    )
     other = simulate(options)
     assert other.world.faces == arena.world.faces
     assert other.world.arcs == arena.world.arcs
@@ -190,14 +208,14 @@ def test_reference_trajectory_has_the_timestamps_and_poses_of_the_log(arena: Sim
 
 
 def test_the_route_is_free_and_positions_keep_their_spacing() -> None:
-    for seed in range(4):
+    for seed in range(2):
         arena = simulate(replace(EXACT, seed=seed, robot=replace(EXACT.robot, num_positions=16)))
         stops = arena.drive.map_from_robot[:, :2]
         steps = np.hypot(*np.diff(stops, axis=0).T)
         assert steps.min() > 1.5 * 0.9 - 0.03
         assert steps.max() < 1.5 * 1.1 + 0.03
         assert distance_to_polyline(stops, arena.world.route).max() < 0.01
-        floor = np.concatenate([np.linspace(*face_outline(f, 0.0), 25) for f in arena.world.faces])
+        floor = np.concatenate([np.linspace(np.array(f.start), np.array(f.end), 25) for f in arena.world.faces])
         assert distance_to_polyline(floor, arena.world.route).min() > 0.2
 
 
