@@ -27,7 +27,8 @@ Segments segment_filter(const Segments& segments, const FilterOptions& options) 
     std::vector<std::size_t> kept;
     for (std::size_t s = 0; s < segments.size(); ++s) {
       const Correspondence* other = segments[s].data();
-      if (mean_distance_m(other, other + segments[s].size(), translation_m) > limit_m) continue;
+      const bool is_main = other == first;  // stays, also where the options ask others to be better than it
+      if (!is_main && mean_distance_m(other, other + segments[s].size(), translation_m) > limit_m) continue;
       quality += segments[s].size();
       kept.push_back(s);
     }
