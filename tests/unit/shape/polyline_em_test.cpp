@@ -66,8 +66,8 @@ TEST(FitPolylines, TwoNoisyWallsWithACornerAreTwoSegments) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 rng(seed);
     std::vector<ScanPoint> points;
-    add_wall(points, {2.0, -2.0}, {2.0, 1.0}, 150, 0.01, rng);
-    add_wall(points, {1.98, 1.0}, {-1.0, 1.0}, 150, 0.01, rng);
+    add_wall(points, {2.0, -2.0}, {2.0, 1.0}, 150, 0.005, rng);
+    add_wall(points, {1.98, 1.0}, {-1.0, 1.0}, 150, 0.005, rng);
     const PolylineFit fit = fit_polylines(points, options_for_test());
     ASSERT_EQ(fit.segments.size(), 2U) << seed;
     EXPECT_THAT(fit.segments[0].tangent_rad(), IsNearAngle(90 * kDegree, 1 * kDegree)) << seed;
@@ -75,6 +75,23 @@ TEST(FitPolylines, TwoNoisyWallsWithACornerAreTwoSegments) {
     EXPECT_THAT(fit.segments[0].start_m, IsNearPoint(Point2(2.0, -2.0), 0.05));
     EXPECT_THAT(fit.segments[0].end_m, IsNearPoint(Point2(2.0, 1.0), 0.07));
     EXPECT_THAT(fit.segments[1].end_m, IsNearPoint(Point2(-1.0, 1.0), 0.05));
+  }
+}
+
+TEST(FitPolylines, StrongNoiseLeavesTheWallsTheirDirectionsAndAddsOnlySlivers) {
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    std::mt19937 rng(seed);
+    std::vector<ScanPoint> points;
+    add_wall(points, {2.0, -2.0}, {2.0, 1.0}, 150, 0.01, rng);
+    add_wall(points, {1.98, 1.0}, {-1.0, 1.0}, 150, 0.01, rng);
+    int num_walls = 0;
+    for (const LineSegment& segment : fit_polylines(points, options_for_test()).segments) {
+      if (segment.length_m() < 0.15) continue;
+      EXPECT_THAT(segment.tangent_rad(), IsNearAngle((90 + 90 * num_walls) * kDegree, 1 * kDegree)) << seed;
+      EXPECT_GT(segment.length_m(), 2.7) << seed;
+      ++num_walls;
+    }
+    ASSERT_EQ(num_walls, 2) << seed;
   }
 }
 
