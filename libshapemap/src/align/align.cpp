@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "shapemap/core/parallel_for.hpp"
@@ -65,10 +64,9 @@ int best_rotation(const std::vector<RotationMatch>& matches) {
 }
 
 Alignment refused(Alignment alignment, AlignStatus status, const std::string& reason) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   alignment.status = status;
   alignment.reason = reason;
-  alignment.ref_from_query = {nan, nan, nan};
+  alignment.ref_from_query = kNoPose;
   return alignment;
 }
 
