@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "shapemap/core/parallel_for.hpp"
@@ -70,10 +69,9 @@ int best_rotation(const std::vector<RotationMatch>& matches) {
 }
 
 Alignment refused(Alignment alignment, AlignStatus status, const std::string& reason) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   alignment.status = status;
   alignment.reason = reason;
-  alignment.ref_from_query = {nan, nan, nan};
+  alignment.ref_from_query = kNoPose;
   return alignment;
 }
 
@@ -87,14 +85,15 @@ std::string text(const Parts&... parts) {
 /// The verdict on a finished alignment.
 Alignment judged(Alignment alignment, const TrustOptions& trust) {
   if (alignment.num_correspondences < trust.min_correspondences) {
-    return refused(std::move(alignment), AlignStatus::kTooFewCorrespondences,
-                   text("only ", alignment.num_correspondences, " correspondences support the best translation, ",
-                        trust.min_correspondences, " are needed"));
+    const std::string reason = text("only ", alignment.num_correspondences,
+                                    " correspondences support the best translation, ", trust.min_correspondences,
+                                    " are needed");
+    return refused(std::move(alignment), AlignStatus::kTooFewCorrespondences, reason);
   }
   if (alignment.overlap_ratio < trust.min_overlap_ratio) {
-    return refused(std::move(alignment), AlignStatus::kTooLittleOverlap,
-                   text("the aligned scan overlaps in ", alignment.overlap, " points, a share of ",
-                        alignment.overlap_ratio, ", ", trust.min_overlap_ratio, " is needed"));
+    const std::string reason = text("the aligned scan overlaps in ", alignment.overlap, " points, a share of ",
+                                    alignment.overlap_ratio, ", ", trust.min_overlap_ratio, " is needed");
+    return refused(std::move(alignment), AlignStatus::kTooLittleOverlap, reason);
   }
   alignment.status = AlignStatus::kOk;
   return alignment;

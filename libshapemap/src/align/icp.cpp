@@ -100,7 +100,10 @@ std::vector<Pose2> decoupled_icp(const PartialMap& target, const Shape& query, c
   for (int s = 0; s < query.num_sub_scans; ++s) {
     const Shape part = only_sub_scan(query, s);
     const IcpResult refined = icp(target, part, target_from_query, mean_distance_m, options, overlap_options);
-    query_from_sub_scan[static_cast<std::size_t>(s)] = inverse(target_from_query) * refined.target_from_query;
+    const Pose2 correction = inverse(target_from_query) * refined.target_from_query;
+    const bool small = correction.translation().norm() <= options.decoupled_max_shift_m &&
+                       std::abs(correction.theta_rad) <= options.decoupled_max_turn_rad;
+    if (small) query_from_sub_scan[static_cast<std::size_t>(s)] = correction;
   }
   return query_from_sub_scan;
 }

@@ -4,7 +4,7 @@
 namespace shapemap {
 namespace {
 
-std::vector<Shape> joined(std::vector<Shape> scans) {
+std::vector<Shape> joined(const std::vector<Shape>& scans) {
   Shape all;
   for (const Shape& scan : scans) all.points.insert(all.points.end(), scan.points.begin(), scan.points.end());
   return {std::move(all)};
@@ -26,7 +26,7 @@ std::vector<Point2> coordinates_of(const std::vector<ShapePoint>& points) {
 }  // namespace
 
 PartialMap::PartialMap(std::vector<Shape> scans, bool as_one_sequence, double histogram_radius_m)
-    : sequences_(as_one_sequence ? joined(std::move(scans)) : std::move(scans)),
+    : sequences_(as_one_sequence ? joined(scans) : std::move(scans)),
       all_points_(points_of(sequences_)),
       index_(coordinates_of(all_points_)) {
   for (const Shape& sequence : sequences_) directions_.emplace_back(sequence, histogram_radius_m);

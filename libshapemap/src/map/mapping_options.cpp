@@ -10,6 +10,8 @@ void make_strict_paper(MappingOptions& options) {
   options.align.filters.main_segments = 1;
   options.align.overlap.rule = OverlapRule::kAny;
   options.align.icp.gate = IcpGate::kSlack;
+  options.align.icp.decoupled_max_shift_m = 10.0;  // no limit: the largest values that the options allow
+  options.align.icp.decoupled_max_turn_rad = kPi;
 }
 
 void validate_all(const MappingOptions& options) {

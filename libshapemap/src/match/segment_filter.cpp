@@ -21,7 +21,8 @@ MainSegment judged_as_main(const Correspondences& segment, const Segments& segme
   const double limit_m = options.segment_distance_factor * own_distance_m + options.segment_distance_slack_m;
   for (std::size_t s = 0; s < segments.size(); ++s) {
     const Correspondence* other = segments[s].data();
-    if (mean_distance_m(other, other + segments[s].size(), main.translation_m) > limit_m) continue;
+    const bool is_main = other == first;  // stays, also where the options ask others to be better than it
+    if (!is_main && mean_distance_m(other, other + segments[s].size(), main.translation_m) > limit_m) continue;
     main.quality += segments[s].size();
     main.survivors.push_back(s);
   }

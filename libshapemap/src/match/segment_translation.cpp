@@ -2,6 +2,12 @@
 #include "shapemap/match/filters.hpp"
 
 namespace shapemap {
+namespace {
+
+/// A mean of equal distances may come out below each of them by rounding; that must not drop them all.
+constexpr double kRounding_m = 1e-9;
+
+}  // namespace
 
 SegmentTranslation segment_wise_translation(const Segments& segments) {
   SegmentTranslation best;
@@ -10,9 +16,10 @@ SegmentTranslation segment_wise_translation(const Segments& segments) {
     const Correspondence* first = segment.data();
     candidate.target_from_query_m = mean_translation_m(first, first + segment.size());
     candidate.mean_distance_m = mean_distance_m(first, first + segment.size(), candidate.target_from_query_m);
+    const double limit_m = candidate.mean_distance_m + kRounding_m;
     for (const Correspondences& other : segments) {
       for (const Correspondence& c : other) {
-        if ((c.translation_m() - candidate.target_from_query_m).norm() > candidate.mean_distance_m) continue;
+        if ((c.translation_m() - candidate.target_from_query_m).norm() > limit_m) continue;
         candidate.kept.push_back(c);
       }
     }

@@ -82,8 +82,9 @@ BitMatrix SimilarityIndex::matches(const ScanFeatures& query) const {
     const double from_rad = wanted.tangent_rad - options_.tangent_tolerance_rad;
     const double to_rad = wanted.tangent_rad + options_.tangent_tolerance_rad;
     match_range(wanted, from_rad, to_rad, bits.row(i));
-    if (from_rad < -kPi) match_range(wanted, from_rad + 2 * kPi, kPi, bits.row(i));
-    if (to_rad > kPi) match_range(wanted, -kPi, to_rad - 2 * kPi, bits.row(i));
+    // Minus and plus half a turn are one direction: at the seam itself, both ends are looked up.
+    if (from_rad <= -kPi) match_range(wanted, from_rad + 2 * kPi, kPi, bits.row(i));
+    if (to_rad >= kPi) match_range(wanted, -kPi, to_rad - 2 * kPi, bits.row(i));
   }
   return bits;
 }

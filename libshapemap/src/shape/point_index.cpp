@@ -2,6 +2,8 @@
 #include "shapemap/shape/point_index.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nanoflann.hpp>
 
 namespace shapemap {
@@ -46,7 +48,9 @@ std::vector<std::size_t> PointIndex::within(const Point2& p, double radius_m) co
   std::vector<std::pair<std::size_t, double>> found;
   nanoflann::SearchParams unsorted;
   unsorted.sorted = false;
-  tree_->index.radiusSearch(p.data(), radius_m * radius_m, found, unsorted);
+  // nanoflann wants the radius squared, and leaves out what is exactly as far.
+  const double beyond2 = std::nextafter(radius_m * radius_m, std::numeric_limits<double>::infinity());
+  tree_->index.radiusSearch(p.data(), beyond2, found, unsorted);
   neighbours.reserve(found.size());
   for (const auto& [point, distance2] : found) neighbours.push_back(point);
   std::sort(neighbours.begin(), neighbours.end());

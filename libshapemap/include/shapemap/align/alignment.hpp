@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,10 @@
 #include "shapemap/core/pose2.hpp"
 
 namespace shapemap {
+
+/// Stands where there is no pose.
+inline constexpr Pose2 kNoPose{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
+                               std::numeric_limits<double>::quiet_NaN()};
 
 /// Whether an alignment can be trusted, and if not, why.
 enum class AlignStatus {
@@ -31,7 +36,7 @@ struct EnumNames<AlignStatus> {
 struct Alignment {
   AlignStatus status = AlignStatus::kNoShape;
   std::string reason;            ///< one line with the numbers behind `status`; empty when ok
-  Pose2 ref_from_query;          ///< NaN unless ok()
+  Pose2 ref_from_query = kNoPose;  ///< NaN unless ok()
   Pose2 shape_ref_from_query;    ///< the same before ICP, from shape alone
   Pose2 icp_ref_from_query;      ///< the same after ICP and before decoupled ICP
   double rotation_rad = 0.0;     ///< the rotation of the grid that won

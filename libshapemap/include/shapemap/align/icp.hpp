@@ -26,6 +26,8 @@ struct IcpOptions {
   IcpGate gate = IcpGate::kFactor;
   double gate_factor = 3.0;
   bool decoupled = true;
+  double decoupled_max_shift_m = 0.10;
+  double decoupled_max_turn_rad = 3 * kDegree;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -34,6 +36,9 @@ struct IcpOptions {
           self.gate);
     visit(Field{"icp-gate-factor", "that multiple", 0.1, 100}, self.gate_factor);
     visit(Field{"icp-decoupled", "ICP on each sub-scan by itself after ICP on the position"}, self.decoupled);
+    visit(Field{"icp-decoupled-max-shift-m", "a larger correction of a sub-scan is no small error, and undone [m]", 0, 10},
+          self.decoupled_max_shift_m);
+    visit(Field{"icp-decoupled-max-turn-deg", "likewise [deg]", 0, 180, kDegree}, self.decoupled_max_turn_rad);
   }
 };
 
@@ -54,7 +59,8 @@ IcpResult icp(const PartialMap& target, const Shape& query, const Pose2& start, 
               const IcpOptions& options, const OverlapOptions& overlap_options);
 
 /// Decoupled ICP: each sub-scan of `query` refined by itself from the pose of the whole. Returns the pose of each
-/// sub-scan in the frame of the query; identity for one that nothing pulls.
+/// sub-scan in the frame of the query; identity for one that nothing pulls, or that is pulled farther than the small
+/// errors of taking sub-scans allow.
 std::vector<Pose2> decoupled_icp(const PartialMap& target, const Shape& query, const Pose2& target_from_query,
                                  double mean_distance_m, const IcpOptions& options,
                                  const OverlapOptions& overlap_options);

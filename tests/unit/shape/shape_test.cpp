@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/shape/shape.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "support/matchers.hpp"
+#include "support/synthetic_world.hpp"
+
+namespace shapemap {
+namespace {
+
+using test::IsNearAngle;
+using test::IsNearPoint;
+
+/// A wall 2 m ahead and `length_m` long, as one laser sees it.
+Position before_a_wall(double length_m) {
+  const test::World wall{{{2.0, -length_m / 2}, {2.0, length_m / 2}}};
+  test::Scanner scanner;
+  scanner.num_beams = 3600;
+  return test::scan_of(wall, {}, scanner);
+}
+
+TEST(Shape, ResampledPointsAreEquallySpacedAlongTheWall) {
+  MappingOptions options = test::paper_options();
+  options.shape.spacing_m = 0.1;
+  const Shape shape = test::shape_of(before_a_wall(2.0), options);
+  ASSERT_EQ(shape.size(), 20U);
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    EXPECT_THAT(shape.points[i].p_m, IsNearPoint(Point2(2.0, -0.95 + 0.1 * static_cast<double>(i)), 0.005)) << i;
+    EXPECT_THAT(shape.points[i].tangent_rad, IsNearAngle(90 * kDegree, 1e-3)) << i;
+  }
+}
+
+TEST(Shape, TheNumberOfResampledPointsFollowsTheSpacing) {
+  MappingOptions options = test::paper_options();
+  for (const auto& [spacing_m, count] : {std::pair{0.05, 40U}, {0.1, 20U}, {0.5, 4U}, {1.0, 2U}}) {
+    options.shape.spacing_m = spacing_m;
+    EXPECT_EQ(test::shape_of(before_a_wall(2.0), options).size(), count) << spacing_m;
+  }
+}
+
+TEST(Shape, AShortPieceGivesItsMiddle) {
+  MappingOptions options = test::paper_options();
+  options.shape.spacing_m = 1.0;
+  const Shape shape = test::shape_of(before_a_wall(0.3), options);
+  ASSERT_EQ(shape.size(), 1U);
+  EXPECT_THAT(shape.points[0].p_m, IsNearPoint(Point2(2.0, 0.0), 0.005));
+}
+
+TEST(Shape, OfBeamsHasThePointsOfTheScan) {
+  MappingOptions options = test::paper_options();
+  options.shape.points = ShapePoints::kBeams;
+  const Position position = before_a_wall(2.0);
+  const std::vector<Return> returns = returns_in_robot(position.sub_scans[0], options.returns);
+  const Shape shape = test::shape_of(position, options);
+  ASSERT_GT(returns.size(), 100U);
+  ASSERT_EQ(shape.size(), returns.size());
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    ASSERT_EQ(shape.points[i].p_m, returns[i].p_in_robot_m);
+    ASSERT_THAT(shape.points[i].tangent_rad, IsNearAngle(90 * kDegree, 1e-3));
+  }
+}
+
+TEST(Shape, DoesNotDependOnTheDensityOfBeams) {
+  const test::World room = test::uneven_room();
+  test::Scanner coarse;
+  coarse.num_beams = 720;
+  test::Scanner fine;
+  fine.num_beams = 2880;
+  const Shape a = test::shape_from(room, {}, coarse);
+  const Shape b = test::shape_from(room, {}, fine);
+  EXPECT_NEAR(static_cast<double>(a.size()), static_cast<double>(b.size()), 0.05 * static_cast<double>(b.size()));
+}
+
+TEST(Shape, PointsKnowTheirSubScanAndComeInItsOrder) {
+  test::Scanner scanner;
+  scanner.num_sub_scans = 4;
+  scanner.num_beams = 401;
+  scanner.view_rad = 100 * kDegree;
+  const Shape shape = test::shape_from(test::uneven_room(), {}, scanner);
+  EXPECT_EQ(shape.num_sub_scans, 4);
+  std::vector<int> points_of(4, 0);
+  int before = 0;
+  for (const ShapePoint& point : shape.points) {
+    EXPECT_GE(point.sub_scan, before);
+    before = point.sub_scan;
+    ++points_of.at(static_cast<std::size_t>(point.sub_scan));
+    // Each looks 50 degrees to either side of its heading.
+    const double bearing_rad = std::atan2(point.p_m.y(), point.p_m.x());
+    EXPECT_LT(angle_between(bearing_rad, point.sub_scan * 90 * kDegree), 51 * kDegree);
+  }
+  for (const int count : points_of) EXPECT_GT(count, 10);
+}
+
+TEST(Shape, LiesOnTheWalls) {
+  const test::World room = test::uneven_room();
+  const Pose2 world_from_robot{0.5, -0.4, 2.0};
+  const Shape shape = test::shape_from(room, world_from_robot);
+  ASSERT_GT(shape.size(), 200U);
+  for (const ShapePoint& point : shape.points) {
+    double nearest_m = 1e9;
+    for (const test::Wall& wall : room) {
+      nearest_m = std::min(nearest_m, LineSegment{wall.start_m, wall.end_m}.distance_m(world_from_robot * point.p_m));
+    }
+    EXPECT_LT(nearest_m, 0.05);
+  }
+}
+
+TEST(Shape, OfAPositionWithoutReturnsIsEmpty) {
+  Position blind = before_a_wall(2.0);
+  for (float& range_m : blind.sub_scans[0].ranges_m) range_m = std::nanf("");
+  const Shape shape = test::shape_of(blind, test::paper_options());
+  EXPECT_EQ(shape.size(), 0U);
+  EXPECT_EQ(shape.num_sub_scans, 1);
+  EXPECT_EQ(test::shape_of(Position{}, test::paper_options()).size(), 0U);
+}
+
+TEST(MovedShape, HasMovedPointsAndTurnedTangents) {
+  const Shape shape{{{{1.0, 2.0}, 170 * kDegree, 0}, {{-1.0, 0.5}, -20 * kDegree, 0}}, 1};
+  const Shape result = moved(shape, {3.0, -1.0, 90 * kDegree});
+  EXPECT_THAT(result.points[0].p_m, IsNearPoint(Point2(1.0, 0.0), 1e-12));
+  EXPECT_THAT(result.points[1].p_m, IsNearPoint(Point2(2.5, -2.0), 1e-12));
+  EXPECT_THAT(result.points[0].tangent_rad, IsNearAngle(260 * kDegree, 1e-12));
+  EXPECT_THAT(result.points[1].tangent_rad, IsNearAngle(70 * kDegree, 1e-12));
+}
+
+TEST(MovedShape, TangentsWrapToHalfATurn) {
+  Shape shape{{{{1.0, 2.0}, 0.0, 0}}, 1};
+  for (int degrees = -360; degrees <= 360; degrees += 5) {
+    shape.points[0].tangent_rad = degrees * kDegree;
+    const double tangent_rad = moved(shape, {0.0, 0.0, 100 * kDegree}).points[0].tangent_rad;
+    EXPECT_LE(std::abs(tangent_rad), kPi + 1e-12);
+    EXPECT_THAT(tangent_rad, IsNearAngle((degrees + 100) * kDegree, 1e-9));
+  }
+}
+
+TEST(MovedShape, AppliesTheSubScanPosesFirst) {
+  const Shape shape{{{{1.0, 0.0}, 0.1, 0}, {{0.0, 1.0}, 0.2, 1}, {{-1.0, 0.0}, 0.3, 1}}, 2};
+  const std::vector<Pose2> sub_scan_poses{{0.01, 0.02, 0.03}, {-0.04, 0.05, -0.06}};
+  const Pose2 b_from_a{2.0, 1.0, 0.5};
+  const Shape result = moved(shape, b_from_a, sub_scan_poses);
+  for (std::size_t i = 0; i < shape.size(); ++i) {
+    const Pose2& first = sub_scan_poses[static_cast<std::size_t>(shape.points[i].sub_scan)];
+    EXPECT_THAT(result.points[i].p_m, IsNearPoint(b_from_a * (first * shape.points[i].p_m), 1e-12));
+    EXPECT_THAT(result.points[i].tangent_rad,
+                IsNearAngle(shape.points[i].tangent_rad + first.theta_rad + b_from_a.theta_rad, 1e-12));
+    EXPECT_EQ(result.points[i].sub_scan, shape.points[i].sub_scan);
+  }
+}
+
+}  // namespace
+}  // namespace shapemap
