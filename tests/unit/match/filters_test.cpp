@@ -10,6 +10,14 @@
 namespace shapemap {
 namespace {
 
+/// As in the paper: only the best main segment goes on.
+Segments paper_segment_filter(const Segments& segments, FilterOptions options) {
+  options.main_segments = 1;
+  const std::vector<Segments> best = segment_filter(segments, options);
+  return best.empty() ? Segments{} : best.front();
+}
+
+
 using test::IsNearPoint;
 
 constexpr FilterOptions kPaper{10 * kDegree, 0.30, 2.0, 0.20};
@@ -127,7 +135,7 @@ TEST(SegmentFilter, DropsASegmentBeyondTwiceTheMainDistanceAndTwentyCentimetres)
   main.push_back(at({0.0, 0.2}, {1.0, 0.0}));
   const Correspondences near{at({3.0, 0.0}, {1.27, 0.0}), at({3.0, 0.1}, {1.27, 0.0})};
   const Correspondences far{at({6.0, 0.0}, {1.0, 0.29}), at({6.0, 0.1}, {1.0, 0.29})};
-  const Segments kept = segment_filter({near, main, far}, kPaper);
+  const Segments kept = paper_segment_filter({near, main, far}, kPaper);
   ASSERT_EQ(sizes_of(kept), (std::vector<std::size_t>{2, 5}));
   EXPECT_EQ(kept[0][0].query_m, near[0].query_m);
   EXPECT_EQ(kept[1][0].query_m, main[0].query_m);
@@ -139,7 +147,7 @@ TEST(SegmentFilter, TheMainSegmentThatLeavesMostPairsWins) {
   };
   // Three small ones that agree outvote a larger one.
   const Segments kept =
-      segment_filter({segment(0, 2, {1, 0}), segment(1, 5, {0, 3}), segment(2, 2, {1, 0}), segment(3, 2, {1, 0})}, kPaper);
+      paper_segment_filter({segment(0, 2, {1, 0}), segment(1, 5, {0, 3}), segment(2, 2, {1, 0}), segment(3, 2, {1, 0})}, kPaper);
   EXPECT_EQ(sizes_of(kept), (std::vector<std::size_t>{2, 2, 2}));
 }
 
@@ -148,10 +156,22 @@ TEST(SegmentFilter, NeverDropsTheMainSegment) {
   strict.segment_distance_factor = 0.5;
   strict.segment_distance_slack_m = 0.0;
   const Correspondences only{at({0.0, 0.0}, {1.0, 0.0}), at({0.1, 0.0}, {1.2, 0.0})};
-  EXPECT_EQ(sizes_of(segment_filter({only}, strict)), (std::vector<std::size_t>{2}));
+  EXPECT_EQ(sizes_of(paper_segment_filter({only}, strict)), (std::vector<std::size_t>{2}));
 }
 
-TEST(SegmentFilter, OfNothingIsNothing) { EXPECT_TRUE(segment_filter({}, kPaper).empty()); }
+TEST(SegmentFilter, GoesOnWithTheBestMainSegmentsThatMoveTheQueryElsewhere) {
+  FilterOptions options = kPaper;
+  const Segments segments{segment(0, 2, {1, 0}), segment(1, 5, {0, 3}), segment(2, 4, {1, 0.05})};
+  options.main_segments = 5;
+  const std::vector<Segments> both = segment_filter(segments, options);
+  ASSERT_EQ(both.size(), 2U);  // the first and the last move the query to the same place
+  EXPECT_EQ(sizes_of(both[0]), (std::vector<std::size_t>{2, 4}));
+  EXPECT_EQ(sizes_of(both[1]), (std::vector<std::size_t>{5}));
+  options.main_segments = 1;
+  EXPECT_EQ(segment_filter(segments, options).size(), 1U);
+}
+
+TEST(SegmentFilter, OfNothingIsNothing) { EXPECT_TRUE(paper_segment_filter({}, kPaper).empty()); }
 
 TEST(SegmentTranslation, KeepsThePairsWithinTheMeanDistanceOfItsSegment) {
   // Mean (1, 0); distances 0.1, 0.1, 0, 0.2, so 0.1 in the mean.
