@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/align/scan_overlap.hpp"
 
+#include <cmath>
+
 namespace shapemap {
 namespace {
 
 std::optional<Partner> nearest_partner(const PartialMap& target, const Point2& p_m, double tangent_rad,
                                        double max_distance_m, double tolerance_rad) {
-  const PointIndex::Neighbour nearest = target.index().nearest(p_m);
-  if (!(nearest.distance_m <= max_distance_m)) return std::nullopt;
+  const PointIndex::Neighbour nearest = target.index().nearest(p_m, max_distance_m);
+  if (!std::isfinite(nearest.distance_m)) return std::nullopt;
   if (angle_between(target.point(nearest.point).tangent_rad, tangent_rad) > tolerance_rad) return std::nullopt;
   return Partner{0, nearest.point, nearest.distance_m};
 }

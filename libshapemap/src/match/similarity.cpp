@@ -7,16 +7,22 @@
 namespace shapemap {
 namespace {
 
-/// The number of bins that are farther apart than `tolerance`. Bytes and a fixed length, so that compilers make
-/// vector code of it.
+/// The number of bins that are farther apart than `tolerance`. Written so that compilers make vector code of it: 16
+/// bytes side by side, unsigned, with a difference that saturates.
 int differing_bins(const AngularHistogram& a, const AngularHistogram& b, std::uint8_t tolerance) {
-  std::uint8_t differing = 0;
-  for (std::size_t i = 0; i < kHistogramBins; ++i) {
-    const std::uint8_t high = std::max(a.bins[i], b.bins[i]);
-    const std::uint8_t low = std::min(a.bins[i], b.bins[i]);
-    differing = static_cast<std::uint8_t>(differing + (static_cast<std::uint8_t>(high - low) > tolerance ? 1 : 0));
+  constexpr std::size_t kLanes = 16;
+  std::array<std::uint8_t, kLanes> differing{};
+  for (std::size_t block = 0; block < kStoredBins; block += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::uint8_t high = std::max(a.bins[block + lane], b.bins[block + lane]);
+      const std::uint8_t low = std::min(a.bins[block + lane], b.bins[block + lane]);
+      const auto apart = static_cast<std::uint8_t>(high - low);
+      differing[lane] = static_cast<std::uint8_t>(differing[lane] + (apart > tolerance ? 1 : 0));
+    }
   }
-  return differing;
+  int sum = 0;
+  for (const std::uint8_t count : differing) sum += count;
+  return sum;
 }
 
 bool more_bits_than(std::uint64_t bits, int count) {

@@ -3,9 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
-
-#include "shapemap/shape/point_index.hpp"
 
 namespace shapemap {
 namespace {
@@ -35,18 +34,34 @@ AngularHistogram normalised(const std::array<int, kHistogramBins>& counts, Histo
 }
 
 NeighbourDirections::NeighbourDirections(const Shape& shape, double radius_m) {
-  std::vector<Point2> points;
-  points.reserve(shape.size());
-  for (const ShapePoint& point : shape.points) points.push_back(point.p_m);
-  const PointIndex index(points);
-  first_.reserve(points.size() + 1);
-  first_.push_back(0);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    for (const std::size_t j : index.within(points[i], radius_m)) {
-      const Point2 to = points[j] - points[i];
-      if (to.squaredNorm() > 0.0) directions_rad_.push_back(std::atan2(to.y(), to.x()));
+  // All pairs: for the few thousand points of a scan quicker than an index, since a radius of half a metre holds many,
+  // and each pair gives two directions, opposite to each other.
+  struct Pair {
+    std::uint32_t from;
+    std::uint32_t to;
+    double direction_rad;
+  };
+  std::vector<Pair> pairs;
+  std::vector<std::size_t> counts(shape.size(), 0);
+  const double radius2 = radius_m * radius_m;
+  for (std::uint32_t i = 0; i < shape.size(); ++i) {
+    const Point2 p_m = shape.points[i].p_m;
+    for (std::uint32_t j = i + 1; j < shape.size(); ++j) {
+      const Point2 to = shape.points[j].p_m - p_m;
+      const double distance2 = to.squaredNorm();
+      if (distance2 > radius2 || distance2 == 0.0) continue;
+      pairs.push_back({i, j, std::atan2(to.y(), to.x())});
+      ++counts[i];
+      ++counts[j];
     }
-    first_.push_back(directions_rad_.size());
+  }
+  first_.resize(shape.size() + 1, 0);
+  std::partial_sum(counts.begin(), counts.end(), first_.begin() + 1);
+  directions_rad_.resize(first_.back());
+  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
+  for (const Pair& pair : pairs) {
+    directions_rad_[next[pair.from]++] = pair.direction_rad;
+    directions_rad_[next[pair.to]++] = pair.direction_rad > 0.0 ? pair.direction_rad - kPi : pair.direction_rad + kPi;
   }
 }
 

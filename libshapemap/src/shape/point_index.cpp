@@ -32,13 +32,15 @@ PointIndex& PointIndex::operator=(PointIndex&&) noexcept = default;
 
 std::size_t PointIndex::size() const { return tree_->points.size(); }
 
-PointIndex::Neighbour PointIndex::nearest(const Point2& p) const {
+PointIndex::Neighbour PointIndex::nearest(const Point2& p, double max_distance_m) const {
   if (tree_->points.empty()) return {};
-  std::size_t point = 0;
+  std::size_t point = tree_->points.size();
   double distance2 = 0.0;
   nanoflann::KNNResultSet<double> found(1);
   found.init(&point, &distance2);
+  distance2 = max_distance_m * max_distance_m;  // the search passes over what is farther than its worst so far
   tree_->index.findNeighbors(found, p.data(), nanoflann::SearchParams());
+  if (point == tree_->points.size()) return {};
   return {point, std::sqrt(distance2)};
 }
 

@@ -31,6 +31,10 @@ Correspondence at(const Point2& query_m, const Point2& translation_m, std::size_
   return c;
 }
 
+Correspondences segment(double x_m, std::size_t count, const Point2& translation_m) {
+  return Correspondences(count, at({x_m, 0.0}, translation_m));
+}
+
 bool survives(double translation_deg, double query_tangent_deg, double target_tangent_deg) {
   Correspondence c = at({1.0, 2.0}, rotate({0.3, 0.0}, translation_deg * kDegree));
   c.query_tangent_rad = query_tangent_deg * kDegree;
@@ -142,12 +146,10 @@ TEST(SegmentFilter, DropsASegmentBeyondTwiceTheMainDistanceAndTwentyCentimetres)
 }
 
 TEST(SegmentFilter, TheMainSegmentThatLeavesMostPairsWins) {
-  const auto segment = [](double x_m, std::size_t count, const Point2& translation_m) {
-    return Correspondences(count, at({x_m, 0.0}, translation_m));
-  };
   // Three small ones that agree outvote a larger one.
   const Segments kept =
-      paper_segment_filter({segment(0, 2, {1, 0}), segment(1, 5, {0, 3}), segment(2, 2, {1, 0}), segment(3, 2, {1, 0})}, kPaper);
+      paper_segment_filter({segment(0, 2, {1, 0}), segment(1, 5, {0, 3}), segment(2, 2, {1, 0}), segment(3, 2, {1, 0})},
+                           kPaper);
   EXPECT_EQ(sizes_of(kept), (std::vector<std::size_t>{2, 2, 2}));
 }
 

@@ -42,8 +42,11 @@ inline constexpr std::size_t kHistogramBins = 36;
 /// A normalised histogram. Bins are stored in steps of 1/252, in which the paper's 0.25 and all quarters, thirds and
 /// sevenths are exact.
 inline constexpr double kHistogramScale = 252.0;
+
+/// Bins after the last one are always 0: they round the size up to whole vector registers.
+inline constexpr std::size_t kStoredBins = 48;
 struct AngularHistogram {
-  std::array<std::uint8_t, kHistogramBins> bins{};
+  std::array<std::uint8_t, kStoredBins> bins{};
 };
 
 /// Counts to stored bins. All-zero counts give an all-zero histogram.
