@@ -72,6 +72,12 @@ inline double cast_ray_m(const World& world, const Point2& from_m, double angle_
   return nearest_m;
 }
 
+inline double distance_to_walls_m(const World& world, const Point2& p_m) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const Wall& wall : world) nearest_m = std::min(nearest_m, LineSegment{wall.start_m, wall.end_m}.distance_m(p_m));
+  return nearest_m;
+}
+
 /// How the scans are taken.
 struct Scanner {
   int num_beams = 720;           ///< of one sub-scan
