@@ -13,9 +13,9 @@
 namespace shapemap {
 namespace {
 
-using ::testing::ElementsAre;
 using test::HasSameBits;
 using test::IsNearPose;
+using ::testing::ElementsAre;
 
 /// Poses of a slow walk through the middle of the room.
 std::vector<Pose2> walk(std::size_t count) {
