@@ -102,6 +102,20 @@ TEST(MapLog, FollowsAKnownWalk) {
   }
 }
 
+TEST(MapLog, LooksBackNoFartherThanTheTargetScans) {
+  const Log log = log_of(test::cluttered_room(3), walk(4));
+  MappingOptions options = test::paper_options();
+  options.chain.target_scans = 1;
+  const MapResult result = mapped(log, options);
+  ASSERT_EQ(result.placed().size(), 4U);
+  for (std::size_t i = 1; i < 4; ++i) {
+    const Alignment pair =
+        align(test::shape_of(log.positions[i - 1], options), test::shape_of(log.positions[i], options), options.align);
+    EXPECT_THAT(result.positions[i].alignment.ref_from_query, IsNearPose(pair.ref_from_query, 1e-9, 1e-9)) << i;
+    EXPECT_EQ(result.positions[i].alignment.overlap, pair.overlap) << i;
+  }
+}
+
 TEST(MapLog, PosesAreTheAlignmentsInARow) {
   const MapResult result = mapped(log_of(test::cluttered_room(3), walk(6)));
   ASSERT_EQ(result.placed().size(), 6U);
