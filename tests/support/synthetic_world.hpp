@@ -35,8 +35,17 @@ inline void add_box(World& world, const Pose2& world_from_box, double half_x_m, 
 /// A room without symmetry, about 8 m by 6 m, around the origin.
 inline World uneven_room() {
   World world;
-  add_polygon(world, {{-4.0, -3.0}, {1.0, -3.0}, {1.0, -2.2}, {4.0, -2.2}, {4.0, 1.0}, {3.2, 3.0}, {-1.5, 3.0},
-                      {-1.5, 2.0}, {-2.6, 2.0}, {-2.6, 3.0}, {-4.0, 3.0}});
+  add_polygon(world, {{-4.0, -3.0},
+                      {1.0, -3.0},
+                      {1.0, -2.2},
+                      {4.0, -2.2},
+                      {4.0, 1.0},
+                      {3.2, 3.0},
+                      {-1.5, 3.0},
+                      {-1.5, 2.0},
+                      {-2.6, 2.0},
+                      {-2.6, 3.0},
+                      {-4.0, 3.0}});
   return world;
 }
 
@@ -72,12 +81,18 @@ inline double cast_ray_m(const World& world, const Point2& from_m, double angle_
   return nearest_m;
 }
 
+inline double distance_to_walls_m(const World& world, const Point2& p_m) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const Wall& wall : world) nearest_m = std::min(nearest_m, LineSegment{wall.start_m, wall.end_m}.distance_m(p_m));
+  return nearest_m;
+}
+
 /// How the scans are taken.
 struct Scanner {
-  int num_beams = 720;           ///< of one sub-scan
-  double view_rad = 2 * kPi;     ///< of one sub-scan
-  double noise_m = 0.0;          ///< standard deviation of a range
-  int num_sub_scans = 1;         ///< spread evenly over a full turn
+  int num_beams = 720;        ///< of one sub-scan
+  double view_rad = 2 * kPi;  ///< of one sub-scan
+  double noise_m = 0.0;       ///< standard deviation of a range
+  int num_sub_scans = 1;      ///< spread evenly over a full turn
   double max_range_m = 20.0;
 };
 

@@ -11,11 +11,11 @@
 namespace shapemap {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using test::HasSameBits;
 using test::IsNanPose;
 using test::IsNearPose;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 AlignOptions options_for_test() { return test::paper_options().align; }
 
@@ -42,8 +42,8 @@ TEST(RotationGrid, AFullTurnHasNoDirectionTwice) {
     for (std::size_t i = 0; i < grid.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) ASSERT_GT(angle_between(grid[i], grid[k]), 0.01 * kDegree) << step_deg;
     }
-    EXPECT_EQ(grid.size(), static_cast<std::size_t>(2 * std::floor(180 / step_deg)) +
-                               (std::fmod(180.0, step_deg) == 0.0 ? 0 : 1));
+    EXPECT_EQ(grid.size(),
+              static_cast<std::size_t>(2 * std::floor(180 / step_deg)) + (std::fmod(180.0, step_deg) == 0.0 ? 0 : 1));
   }
 }
 

@@ -78,7 +78,8 @@ TEST(PartnersWithin, EqualBruteForceUnderBothRules) {
     for (std::size_t q = 0; q < query.size(); ++q) {
       std::optional<Partner> best;
       for (std::size_t t = 0; t < target_points.size(); ++t) {
-        const bool similar = angle_between(target_points[t].tangent_rad, query.points[q].tangent_rad + 0.1) <= 10 * kDegree;
+        const bool similar =
+            angle_between(target_points[t].tangent_rad, query.points[q].tangent_rad + 0.1) <= 10 * kDegree;
         const double distance_m = (target_points[t].p_m - pose * query.points[q].p_m).norm();
         if (rule == OverlapRule::kAny && !similar) continue;
         if (!best || distance_m < best->distance_m) best = Partner{q, similar ? t : target_points.size(), distance_m};

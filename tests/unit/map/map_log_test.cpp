@@ -13,9 +13,9 @@
 namespace shapemap {
 namespace {
 
-using ::testing::ElementsAre;
 using test::HasSameBits;
 using test::IsNearPose;
+using ::testing::ElementsAre;
 
 /// Poses of a slow walk through the middle of the room.
 std::vector<Pose2> walk(std::size_t count) {
@@ -99,6 +99,20 @@ TEST(MapLog, FollowsAKnownWalk) {
   for (std::size_t i = 0; i < truth.size(); ++i) {
     EXPECT_EQ(result.placed()[i].position_index, i);
     EXPECT_THAT(result.placed()[i].map_from_robot, IsNearPose(inverse(truth[0]) * truth[i], 0.08, 1.5 * kDegree)) << i;
+  }
+}
+
+TEST(MapLog, LooksBackNoFartherThanTheTargetScans) {
+  const Log log = log_of(test::cluttered_room(3), walk(4));
+  MappingOptions options = test::paper_options();
+  options.chain.target_scans = 1;
+  const MapResult result = mapped(log, options);
+  ASSERT_EQ(result.placed().size(), 4U);
+  for (std::size_t i = 1; i < 4; ++i) {
+    const Alignment pair =
+        align(test::shape_of(log.positions[i - 1], options), test::shape_of(log.positions[i], options), options.align);
+    EXPECT_THAT(result.positions[i].alignment.ref_from_query, IsNearPose(pair.ref_from_query, 1e-9, 1e-9)) << i;
+    EXPECT_EQ(result.positions[i].alignment.overlap, pair.overlap) << i;
   }
 }
 

@@ -144,7 +144,8 @@ TEST_P(FiltersAgainstOracle, SegmentsAreTheRunsBetweenJumps) {
 TEST_P(FiltersAgainstOracle, SegmentFilterKeepsWhatTheBestMainSegmentLeaves) {
   const Case random = random_case(GetParam());
   const Segments segments = cut_into_segments(random.correspondences, random.options);
-  EXPECT_EQ(names_of(paper_segment_filter(segments, random.options)), names_of(slow_segment_filter(segments, random.options)));
+  EXPECT_EQ(names_of(paper_segment_filter(segments, random.options)),
+            names_of(slow_segment_filter(segments, random.options)));
 }
 
 TEST_P(FiltersAgainstOracle, SegmentTranslationKeepsMostPairs) {

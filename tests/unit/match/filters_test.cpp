@@ -147,9 +147,8 @@ TEST(SegmentFilter, DropsASegmentBeyondTwiceTheMainDistanceAndTwentyCentimetres)
 
 TEST(SegmentFilter, TheMainSegmentThatLeavesMostPairsWins) {
   // Three small ones that agree outvote a larger one.
-  const Segments kept =
-      paper_segment_filter({segment(0, 2, {1, 0}), segment(1, 5, {0, 3}), segment(2, 2, {1, 0}), segment(3, 2, {1, 0})},
-                           kPaper);
+  const Segments kept = paper_segment_filter(
+      {segment(0, 2, {1, 0}), segment(1, 5, {0, 3}), segment(2, 2, {1, 0}), segment(3, 2, {1, 0})}, kPaper);
   EXPECT_EQ(sizes_of(kept), (std::vector<std::size_t>{2, 2, 2}));
 }
 

@@ -159,6 +159,32 @@ TEST(FitPolylines, ADoorRecessIsNotSwallowedByItsWall) {
   }
 }
 
+TEST(FitPolylines, ALongWallDoesNotOutvoteAShortRecess) {
+  std::mt19937 rng(2);
+  std::vector<ScanPoint> points;
+  add_wall(points, {2.0, -4.0}, {2.0, -0.11}, 390, 0.0, rng);
+  add_wall(points, {2.07, -0.10}, {2.07, 0.10}, 21, 0.0, rng);
+  add_wall(points, {2.0, 0.11}, {2.0, 4.0}, 390, 0.0, rng);
+  const PolylineFit fit = fit_polylines(points, options_for_test());
+  const LineSegment& recess = fit.segments[static_cast<std::size_t>(fit.closest_segment[390 + 10])];
+  EXPECT_LT(recess.distance_m({2.07, 0.0}), 0.01);
+  EXPECT_LT(recess.length_m(), 0.4);
+}
+
+TEST(FitPolylines, AWallEndsWhereItsSupportHasAHole) {
+  // The first polyline runs straight past a deep recess, whose points it then cannot explain.
+  std::mt19937 rng(2);
+  std::vector<ScanPoint> points;
+  add_wall(points, {2.0, -2.0}, {2.0, -0.45}, 150, 0.0, rng);
+  add_wall(points, {2.12, -0.44}, {2.12, 0.44}, 88, 0.0, rng);
+  add_wall(points, {2.0, 0.45}, {2.0, 2.0}, 150, 0.0, rng);
+  PolylineOptions options = options_for_test();
+  options.simplify_tolerance_m = 0.30;
+  for (const LineSegment& segment : fit_polylines(points, options).segments) {
+    EXPECT_GT(segment.distance_m({2.0, 0.0}), 0.08) << segment.start_m.y() << " to " << segment.end_m.y();
+  }
+}
+
 TEST(FitPolylines, AnArcIsSeveralChordsThatStayNearIt) {
   std::vector<ScanPoint> points;
   for (int i = 0; i <= 180; ++i) points.push_back({rotate({1.5, 0.0}, i * kDegree), 1.5 * kDegree});

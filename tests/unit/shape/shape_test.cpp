@@ -100,11 +100,7 @@ TEST(Shape, LiesOnTheWalls) {
   const Shape shape = test::shape_from(room, world_from_robot);
   ASSERT_GT(shape.size(), 200U);
   for (const ShapePoint& point : shape.points) {
-    double nearest_m = 1e9;
-    for (const test::Wall& wall : room) {
-      nearest_m = std::min(nearest_m, LineSegment{wall.start_m, wall.end_m}.distance_m(world_from_robot * point.p_m));
-    }
-    EXPECT_LT(nearest_m, 0.05);
+    EXPECT_LT(test::distance_to_walls_m(room, world_from_robot * point.p_m), 0.01);
   }
 }
 

@@ -91,6 +91,11 @@ TEST(SimplifyPolyline, TakesALineThatRunsBackOverItself) {
   expect_well_formed(points, simplify_polyline(points, 0.05));
 }
 
+TEST(SimplifyPolyline, TakesALineThatRunsOverOneOfItsVerticesTwice) {
+  const std::vector<Point2> points{{4, 3}, {3, 3}, {4, 2}, {2, 5}, {6, 1}, {6, 2}, {6, 1}, {6, 4}};
+  expect_well_formed(points, simplify_polyline(points, 0.5));
+}
+
 TEST(SimplifyPolyline, TakesALoopThatEndsWhereItBegan) {
   std::vector<Point2> points;
   for (int i = 0; i <= 36; ++i) points.push_back(rotate({2.0, 0.0}, (i % 36) * 10 * kDegree));
