@@ -118,9 +118,10 @@ void BM_Align(benchmark::State& state) {
   options.icp.max_iterations = static_cast<int>(state.range(0));
   options.icp.decoupled = options.icp.max_iterations > 0;
   const Shape query = full_shape(kQuery);
-  const std::vector<Shape> scans = target_scans();
+  std::vector<TargetScan> scans;  // what the chain keeps of each scan
+  for (const Shape& scan : target_scans()) scans.push_back(target_scan(scan, options.histogram.radius_m));
   for (auto _ : state) {
-    const PartialMap target(scans, false, options.histogram.radius_m);
+    const PartialMap target(scans);
     benchmark::DoNotOptimize(align(target, query, options));
   }
   set_sizes(state, query.size(), 3 * kNumPoints);

@@ -19,8 +19,10 @@ struct MatchTarget {
 
 MatchTarget match_target(const PartialMap& map, const AlignOptions& options) {
   MatchTarget target{map, {}};
-  for (std::size_t s = 0; s < map.sequences().size(); ++s) {
-    const ScanFeatures features = features_of(map.sequences()[s], map.directions()[s], 0.0, options.histogram.norm);
+  for (const TargetScan& sequence : map.sequences()) {
+    ScanFeatures features;
+    for (const ShapePoint& point : sequence.shape.points) features.tangents_rad.push_back(wrap_angle(point.tangent_rad));
+    features.histograms = sequence.directions->histograms(sequence.turned_rad, options.histogram.norm);
     target.indices.emplace_back(features, options.similarity);
   }
   return target;
@@ -35,7 +37,7 @@ RotationMatch match_at_rotation(const MatchTarget& target, const Shape& query, c
   const ScanFeatures features = features_of(query, directions, rotation_rad, options.histogram.norm);
   for (std::size_t s = 0; s < target.indices.size(); ++s) {
     const std::vector<IndexPair> pairs = longest_common_subsequence(target.indices[s].matches(features));
-    const Correspondences found = correspondences_of(pairs, turned, target.map.sequences()[s], s);
+    const Correspondences found = correspondences_of(pairs, turned, target.map.sequences()[s].shape, s);
     match.lcs.insert(match.lcs.end(), found.begin(), found.end());
   }
   match.spread = collinear_filter(match.lcs, options.filters);

@@ -11,7 +11,7 @@ namespace {
 /// A placed scan that later ones are aligned to.
 struct RecentScan {
   Pose2 map_from_robot;
-  Shape shape;  ///< with the corrections of its sub-scans
+  TargetScan scan;  ///< in the robot's frame, with the corrections of its sub-scans
 };
 
 /// The chain of the paper: each scan against the partial map of the few before it.
@@ -62,7 +62,8 @@ class Chain {
     }
     if (outcome.starts_fragment) result.fragments.emplace_back();
     outcome.fragment = static_cast<int>(result.fragments.size()) - 1;
-    recent_.push_back({placed.map_from_robot, moved(shape, {}, placed.robot_from_sub_scan)});
+    recent_.push_back({placed.map_from_robot, target_scan(moved(shape, {}, placed.robot_from_sub_scan),
+                                                          options_.align.histogram.radius_m)});
     if (recent_.size() > static_cast<std::size_t>(options_.chain.target_scans)) recent_.pop_front();
     result.fragments.back().positions.push_back(std::move(placed));
   }
@@ -70,10 +71,12 @@ class Chain {
   /// The recent scans in the frame of the latest.
   PartialMap target() const {
     const Pose2 ref_from_map = inverse(recent_.back().map_from_robot);
-    std::vector<Shape> scans;
-    for (const RecentScan& scan : recent_) scans.push_back(moved(scan.shape, ref_from_map * scan.map_from_robot));
-    return {std::move(scans), options_.align.lcs.target == LcsTarget::kConcatenated,
-            options_.align.histogram.radius_m};
+    std::vector<TargetScan> scans;
+    for (const RecentScan& recent : recent_) scans.push_back(moved(recent.scan, ref_from_map * recent.map_from_robot));
+    if (options_.align.lcs.target == LcsTarget::kPerScan) return PartialMap(std::move(scans));
+    std::vector<Shape> shapes;
+    for (const TargetScan& scan : scans) shapes.push_back(scan.shape);
+    return {shapes, true, options_.align.histogram.radius_m};
   }
 
   static void add_times(const Alignment& alignment, StageTimes& times) {

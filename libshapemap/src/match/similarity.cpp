@@ -2,32 +2,73 @@
 #include "shapemap/match/similarity.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 namespace shapemap {
 namespace {
 
-/// The number of bins that are farther apart than `tolerance`. Written so that compilers make vector code of it: 16
-/// bytes side by side, unsigned, with a difference that saturates.
-int differing_bins(const AngularHistogram& a, const AngularHistogram& b, std::uint8_t tolerance) {
-  constexpr std::size_t kLanes = 16;
-  std::array<std::uint8_t, kLanes> differing{};
-  for (std::size_t block = 0; block < kStoredBins; block += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const std::uint8_t high = std::max(a.bins[block + lane], b.bins[block + lane]);
-      const std::uint8_t low = std::min(a.bins[block + lane], b.bins[block + lane]);
-      const auto apart = static_cast<std::uint8_t>(high - low);
-      differing[lane] = static_cast<std::uint8_t>(differing[lane] + (apart > tolerance ? 1 : 0));
-    }
+using Word = BitMatrix::Word;
+
+/// Levels of a stored bin, 0 to kHistogramScale, and one more that none reaches.
+constexpr std::size_t kLevels = static_cast<std::size_t>(kHistogramScale) + 2;
+
+/// Words that are worked on together, so that compilers make vector code of it.
+constexpr std::size_t kBlock = 2;
+
+/// Counters for 64 * kBlock target points, one bit of each to a word, that stay at "too many" once they overflow.
+class BitCounters {
+ public:
+  /// Counts up to `highest` exactly.
+  explicit BitCounters(int highest) : highest_(static_cast<unsigned>(highest)) {
+    while ((1U << num_planes_) <= highest_) ++num_planes_;
   }
-  int sum = 0;
-  for (const std::uint8_t count : differing) sum += count;
-  return sum;
+
+  /// Adds 1 wherever a bit of `ones` is set.
+  void add(std::array<Word, kBlock> ones) {
+    for (std::size_t plane = 0; plane < num_planes_; ++plane) {
+      for (std::size_t w = 0; w < kBlock; ++w) {
+        const Word carry = planes_[plane][w] & ones[w];
+        planes_[plane][w] ^= ones[w];
+        ones[w] = carry;
+      }
+    }
+    for (std::size_t w = 0; w < kBlock; ++w) overflow_[w] |= ones[w];
+  }
+
+  /// The points whose count is `highest` or less.
+  Word not_above(std::size_t w) const {
+    Word below = 0;
+    Word equal = ~Word{0};
+    for (std::size_t plane = num_planes_; plane-- > 0;) {
+      const Word limit = ((highest_ >> plane) & 1U) ? ~Word{0} : Word{0};
+      below |= equal & limit & ~planes_[plane][w];
+      equal &= ~(limit ^ planes_[plane][w]);
+    }
+    return (below | equal) & ~overflow_[w];
+  }
+
+ private:
+  static constexpr std::size_t kMaxPlanes = 6;  // enough for all 36 bins
+  std::array<std::array<Word, kBlock>, kMaxPlanes> planes_{};
+  std::array<Word, kBlock> overflow_{};
+  std::size_t num_planes_ = 0;
+  unsigned highest_;
+};
+
+/// Index of the lowest bit that is set in `word`, which is not 0.
+std::size_t lowest_bit(Word word) {
+  static_assert(sizeof(Word) == sizeof(unsigned long long));
+  return static_cast<std::size_t>(__builtin_ctzll(word));
 }
 
-bool more_bits_than(std::uint64_t bits, int count) {
-  for (int k = 0; k < count && bits != 0; ++k) bits &= bits - 1;  // drops the lowest bit that is set
-  return bits != 0;
+std::vector<std::size_t> by_tangent(const std::vector<double>& tangents_rad) {
+  std::vector<std::size_t> order(tangents_rad.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return tangents_rad[a] < tangents_rad[b]; });
+  return order;
 }
 
 }  // namespace
@@ -45,52 +86,78 @@ ScanFeatures features_of(const Shape& shape, const NeighbourDirections& directio
 
 SimilarityIndex::SimilarityIndex(const ScanFeatures& target, const SimilarityOptions& options)
     : options_(options),
-      bin_tolerance_steps_(static_cast<int>(std::floor(options.bin_tolerance * kHistogramScale + 1e-9))) {
-  entries_.reserve(target.size());
-  for (std::size_t i = 0; i < target.size(); ++i) {
-    entries_.push_back(entry_of(target.tangents_rad[i], target.histograms[i], i));
+      bin_tolerance_steps_(static_cast<int>(std::floor(options.bin_tolerance * kHistogramScale + 1e-9))),
+      order_(by_tangent(target.tangents_rad)),
+      at_least_(kHistogramBins * kLevels, (target.size() + kBlock * BitMatrix::kWordBits - 1) /
+                                              (kBlock * BitMatrix::kWordBits) * kBlock * BitMatrix::kWordBits) {
+  tangents_rad_.reserve(order_.size());
+  for (const std::size_t point : order_) tangents_rad_.push_back(target.tangents_rad[point]);
+  for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
+    for (std::size_t k = 0; k < order_.size(); ++k) {
+      at_least_.set(bin * kLevels + target.histograms[order_[k]].bins[bin], k);
+    }
+    for (std::size_t level = kLevels - 1; level-- > 0;) {
+      Word* here = at_least_.row(bin * kLevels + level);
+      const Word* above = here + at_least_.words_per_row();
+      for (std::size_t w = 0; w < at_least_.words_per_row(); ++w) here[w] |= above[w];
+    }
   }
-  std::stable_sort(entries_.begin(), entries_.end(),
-                   [](const Entry& a, const Entry& b) { return a.tangent_rad < b.tangent_rad; });
 }
 
-SimilarityIndex::Entry SimilarityIndex::entry_of(double tangent_rad, const AngularHistogram& histogram,
-                                                 std::size_t point) const {
-  Entry entry{tangent_rad, 0, 0, point, histogram};
-  for (std::size_t b = 0; b < kHistogramBins; ++b) {
-    if (histogram.bins[b] == 0) entry.empty_bins |= std::uint64_t{1} << b;
-    if (histogram.bins[b] > bin_tolerance_steps_) entry.full_bins |= std::uint64_t{1} << b;
+void SimilarityIndex::match_words(const AngularHistogram& query, std::size_t first, std::size_t last,
+                                  Words& similar) const {
+  // A target bin differs when it is above the query's bin and the tolerance, or not at least the bin less the tolerance.
+  std::array<const Word*, kHistogramBins> too_high{};
+  std::array<const Word*, kHistogramBins> high_enough{};
+  for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
+    const int above = std::min(query.bins[bin] + bin_tolerance_steps_ + 1, static_cast<int>(kLevels) - 1);
+    const int least = std::max(query.bins[bin] - bin_tolerance_steps_, 0);
+    too_high[bin] = at_least_.row(bin * kLevels + static_cast<std::size_t>(above));
+    high_enough[bin] = at_least_.row(bin * kLevels + static_cast<std::size_t>(least));
   }
-  return entry;
+  for (std::size_t block = first / kBlock * kBlock; block < last; block += kBlock) {
+    BitCounters differing(options_.max_differing_bins);
+    for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
+      std::array<Word, kBlock> ones;
+      for (std::size_t w = 0; w < kBlock; ++w) ones[w] = too_high[bin][block + w] | ~high_enough[bin][block + w];
+      differing.add(ones);
+    }
+    for (std::size_t w = 0; w < kBlock; ++w) similar[block + w] = differing.not_above(w);
+  }
 }
 
-bool SimilarityIndex::similar_histograms(const Entry& a, const Entry& b) const {
-  // Most pairs differ in many bins that are empty in one and full in the other: a few instructions rule them out.
-  const std::uint64_t surely_differ = (a.empty_bins & b.full_bins) | (a.full_bins & b.empty_bins);
-  if (more_bits_than(surely_differ, options_.max_differing_bins)) return false;
-  return differing_bins(a.histogram, b.histogram, static_cast<std::uint8_t>(bin_tolerance_steps_)) <=
-         options_.max_differing_bins;
-}
-
-void SimilarityIndex::match_range(const Entry& query, double from_rad, double to_rad, BitMatrix::Word* row) const {
-  auto entry = std::lower_bound(entries_.begin(), entries_.end(), from_rad,
-                                [](const Entry& e, double angle_rad) { return e.tangent_rad < angle_rad; });
-  for (; entry != entries_.end() && entry->tangent_rad <= to_rad; ++entry) {
-    if (!similar_histograms(query, *entry)) continue;
-    row[entry->point / BitMatrix::kWordBits] |= BitMatrix::Word{1} << (entry->point % BitMatrix::kWordBits);
+void SimilarityIndex::match_range(const AngularHistogram& query, double from_rad, double to_rad, Words& similar,
+                                  Word* row) const {
+  const auto begin = static_cast<std::size_t>(
+      std::lower_bound(tangents_rad_.begin(), tangents_rad_.end(), from_rad) - tangents_rad_.begin());
+  const auto end = static_cast<std::size_t>(
+      std::upper_bound(tangents_rad_.begin(), tangents_rad_.end(), to_rad) - tangents_rad_.begin());
+  if (begin >= end) return;
+  const std::size_t first_word = begin / BitMatrix::kWordBits;
+  const std::size_t last_word = (end - 1) / BitMatrix::kWordBits;
+  match_words(query, first_word, last_word + 1, similar);
+  similar[first_word] &= ~Word{0} << (begin % BitMatrix::kWordBits);
+  similar[last_word] &= ~Word{0} >> (BitMatrix::kWordBits - 1 - (end - 1) % BitMatrix::kWordBits);
+  for (std::size_t w = first_word; w <= last_word; ++w) {
+    for (Word rest = similar[w]; rest != 0; rest &= rest - 1) {
+      const std::size_t point = order_[w * BitMatrix::kWordBits + lowest_bit(rest)];
+      row[point / BitMatrix::kWordBits] |= Word{1} << (point % BitMatrix::kWordBits);
+    }
   }
 }
 
 BitMatrix SimilarityIndex::matches(const ScanFeatures& query) const {
-  BitMatrix bits(query.size(), entries_.size());
+  BitMatrix bits(query.size(), order_.size());
+  Words similar(at_least_.words_per_row());
   for (std::size_t i = 0; i < query.size(); ++i) {
-    const Entry wanted = entry_of(query.tangents_rad[i], query.histograms[i], i);
-    const double from_rad = wanted.tangent_rad - options_.tangent_tolerance_rad;
-    const double to_rad = wanted.tangent_rad + options_.tangent_tolerance_rad;
-    match_range(wanted, from_rad, to_rad, bits.row(i));
+    const AngularHistogram& wanted = query.histograms[i];
+    const double tangent_rad = query.tangents_rad[i];
+    const double from_rad = tangent_rad - options_.tangent_tolerance_rad;
+    const double to_rad = tangent_rad + options_.tangent_tolerance_rad;
+    match_range(wanted, from_rad, to_rad, similar, bits.row(i));
     // Minus and plus half a turn are one direction: at the seam itself, both ends are looked up.
-    if (from_rad <= -kPi) match_range(wanted, from_rad + 2 * kPi, kPi, bits.row(i));
-    if (to_rad >= kPi) match_range(wanted, -kPi, to_rad - 2 * kPi, bits.row(i));
+    if (from_rad <= -kPi) match_range(wanted, from_rad + 2 * kPi, kPi, similar, bits.row(i));
+    if (to_rad >= kPi) match_range(wanted, -kPi, to_rad - 2 * kPi, similar, bits.row(i));
   }
   return bits;
 }

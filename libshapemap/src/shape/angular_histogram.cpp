@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numeric>
 
 namespace shapemap {
@@ -34,20 +33,26 @@ AngularHistogram normalised(const std::array<int, kHistogramBins>& counts, Histo
 }
 
 NeighbourDirections::NeighbourDirections(const Shape& shape, double radius_m) {
-  // All pairs: for the few thousand points of a scan quicker than an index, since a radius of half a metre holds many,
-  // and each pair gives two directions, opposite to each other.
+  // Sweeps over the points by x. Each pair is met once and gives two directions, opposite to each other.
   struct Pair {
-    std::uint32_t from;
-    std::uint32_t to;
+    std::size_t from;
+    std::size_t to;
     double direction_rad;
   };
+  std::vector<std::size_t> order(shape.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return shape.points[a].p_m.x() < shape.points[b].p_m.x();
+  });
   std::vector<Pair> pairs;
   std::vector<std::size_t> counts(shape.size(), 0);
   const double radius2 = radius_m * radius_m;
-  for (std::uint32_t i = 0; i < shape.size(); ++i) {
-    const Point2 p_m = shape.points[i].p_m;
-    for (std::uint32_t j = i + 1; j < shape.size(); ++j) {
-      const Point2 to = shape.points[j].p_m - p_m;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::size_t i = order[k];
+    for (std::size_t l = k + 1; l < order.size(); ++l) {
+      const std::size_t j = order[l];
+      const Point2 to = shape.points[j].p_m - shape.points[i].p_m;
+      if (to.x() > radius_m) break;
       const double distance2 = to.squaredNorm();
       if (distance2 > radius2 || distance2 == 0.0) continue;
       pairs.push_back({i, j, std::atan2(to.y(), to.x())});

@@ -38,7 +38,8 @@ PointIndex::Neighbour PointIndex::nearest(const Point2& p, double max_distance_m
   double distance2 = 0.0;
   nanoflann::KNNResultSet<double> found(1);
   found.init(&point, &distance2);
-  distance2 = max_distance_m * max_distance_m;  // the search passes over what is farther than its worst so far
+  // The search passes over what is not closer than its worst so far; a point exactly at the distance counts.
+  distance2 = std::nextafter(max_distance_m * max_distance_m, std::numeric_limits<double>::infinity());
   tree_->index.findNeighbors(found, p.data(), nanoflann::SearchParams());
   if (point == tree_->points.size()) return {};
   return {point, std::sqrt(distance2)};

@@ -112,10 +112,9 @@ TEST(PartialMap, KeepsScansApartOrInARow) {
   const Shape second{{{{2.0, 0.0}, 0.3, 0}}, 1};
   const PartialMap apart({first, second}, false, 0.5);
   ASSERT_EQ(apart.sequences().size(), 2U);
-  EXPECT_EQ(apart.directions().size(), 2U);
   const PartialMap row({first, second}, true, 0.5);
   ASSERT_EQ(row.sequences().size(), 1U);
-  EXPECT_EQ(row.sequences()[0].size(), 3U);
+  EXPECT_EQ(row.sequences()[0].shape.size(), 3U);
   for (const PartialMap* map : {&apart, &row}) {
     ASSERT_EQ(map->num_points(), 3U);
     EXPECT_EQ(map->point(2).tangent_rad, 0.3);

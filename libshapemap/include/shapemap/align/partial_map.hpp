@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "shapemap/shape/angular_histogram.hpp"
@@ -9,24 +10,37 @@
 
 namespace shapemap {
 
+/// A scan that others are aligned to. What is slow to compute, the directions between its points, is shared by all the
+/// partial maps that it is part of, however it is turned there.
+struct TargetScan {
+  Shape shape;  ///< in the frame of the partial map
+  std::shared_ptr<const NeighbourDirections> directions;
+  double turned_rad = 0.0;  ///< of `shape` since `directions` were computed
+};
+
+TargetScan target_scan(Shape shape, double histogram_radius_m);
+
+/// The same scan in another frame.
+TargetScan moved(const TargetScan& scan, const Pose2& b_from_a);
+
 /// A few recent scans at their estimated poses, all in the frame of the reference (the latest of them): what a query is
 /// aligned to (paper, section II-C). Built once per alignment and not changed by it.
 class PartialMap {
  public:
-  /// `scans` are already in the reference frame. With `as_one_sequence`, all scans are one long sequence of points, in
-  /// the order given, for a single LCS; else each scan is matched on its own.
-  PartialMap(std::vector<Shape> scans, bool as_one_sequence, double histogram_radius_m);
+  /// `scans` are already in the reference frame.
+  explicit PartialMap(std::vector<TargetScan> scans);
 
-  const std::vector<Shape>& sequences() const { return sequences_; }
-  const std::vector<NeighbourDirections>& directions() const { return directions_; }
+  /// With `as_one_sequence`, all scans are one long sequence of points, in the order given, for a single LCS; else each
+  /// scan is matched on its own.
+  PartialMap(const std::vector<Shape>& scans, bool as_one_sequence, double histogram_radius_m);
 
+  const std::vector<TargetScan>& sequences() const { return sequences_; }
   std::size_t num_points() const { return all_points_.size(); }
   const ShapePoint& point(std::size_t i) const { return all_points_[i]; }
   const PointIndex& index() const { return index_; }
 
  private:
-  std::vector<Shape> sequences_;
-  std::vector<NeighbourDirections> directions_;
+  std::vector<TargetScan> sequences_;
   std::vector<ShapePoint> all_points_;
   PointIndex index_;
 };

@@ -71,20 +71,19 @@ class SimilarityIndex {
   BitMatrix matches(const ScanFeatures& query) const;
 
  private:
-  struct Entry {
-    double tangent_rad = 0.0;
-    std::uint64_t empty_bins = 0;  ///< bins of count zero
-    std::uint64_t full_bins = 0;   ///< bins that differ from an empty one
-    std::size_t point = 0;
-    AngularHistogram histogram;
-  };
-  Entry entry_of(double tangent_rad, const AngularHistogram& histogram, std::size_t point) const;
-  bool similar_histograms(const Entry& a, const Entry& b) const;
-  void match_range(const Entry& query, double from_rad, double to_rad, BitMatrix::Word* row) const;
+  using Words = std::vector<BitMatrix::Word>;
+
+  void match_range(const AngularHistogram& query, double from_rad, double to_rad, Words& similar,
+                   BitMatrix::Word* row) const;
+  void match_words(const AngularHistogram& query, std::size_t first, std::size_t last, Words& similar) const;
 
   SimilarityOptions options_;
-  int bin_tolerance_steps_;      ///< in steps of the stored bins
-  std::vector<Entry> entries_;   ///< by ascending tangent in [-pi, pi]
+  int bin_tolerance_steps_;            ///< in steps of the stored bins
+  std::vector<std::size_t> order_;     ///< target points by ascending tangent in [-pi, pi]
+  std::vector<double> tangents_rad_;   ///< in that order
+  /// A row for each bin and level: the points, in that order, whose bin is at that level or above. Differing bins of one
+  /// query point and 64 target points are then counted at once, with bits side by side.
+  BitMatrix at_least_;
 };
 
 }  // namespace shapemap
