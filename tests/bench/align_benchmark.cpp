@@ -26,7 +26,8 @@ Shape full_shape(std::size_t position) {
   MappingOptions options;
   options.shape.points = ShapePoints::kBeams;
   Shape shape = shape_of(demo_log().positions.at(position), options.returns, options.polylines, options.shape);
-  for (std::size_t i = 0; shape.size() < kNumPoints; ++i) shape.points.push_back(shape.points[shape.size() - 1 - 2 * i]);
+  for (std::size_t i = 0; shape.size() < kNumPoints; ++i)
+    shape.points.push_back(shape.points[shape.size() - 1 - 2 * i]);
   return shape;
 }
 
@@ -59,8 +60,7 @@ void set_sizes(benchmark::State& state, std::size_t rows, std::size_t columns) {
 void BM_ShapeOfPosition(benchmark::State& state) {
   const MappingOptions options;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        shape_of(demo_log().positions[kQuery], options.returns, options.polylines, options.shape));
+    benchmark::DoNotOptimize(shape_of(demo_log().positions[kQuery], options.returns, options.polylines, options.shape));
   }
 }
 BENCHMARK(BM_ShapeOfPosition)->Unit(benchmark::kMillisecond);
@@ -90,10 +90,9 @@ void BM_LcsByDynamicProgramming(benchmark::State& state) {
     std::vector<std::uint16_t> length((matches.rows() + 1) * width, 0);
     for (std::size_t i = 1; i <= matches.rows(); ++i) {
       for (std::size_t j = 1; j < width; ++j) {
-        length[i * width + j] =
-            matches.test(i - 1, j - 1)
-                ? static_cast<std::uint16_t>(length[(i - 1) * width + j - 1] + 1)
-                : std::max(length[(i - 1) * width + j], length[i * width + j - 1]);
+        length[i * width + j] = matches.test(i - 1, j - 1)
+                                    ? static_cast<std::uint16_t>(length[(i - 1) * width + j - 1] + 1)
+                                    : std::max(length[(i - 1) * width + j], length[i * width + j - 1]);
       }
     }
     std::vector<IndexPair> pairs;

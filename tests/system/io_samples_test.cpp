@@ -60,13 +60,13 @@ TEST_P(Samples, StayThemselvesThroughEveryFormat) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    MrptCommon, Samples,
-    testing::Values(Sample{"2006-01ENE-21-SENA_Telecom Faculty_one_loop_only.rawlog", 225, 361, 1137834225.713386,
-                           59.074946, 58.04, 0.885355},
-                    Sample{"localization_demo.rawlog", 37, 361, 1137772793.094853, 9.283349, 41.23, 0.994235},
-                    Sample{"uwb_ro-localization_demo.rawlog", 343, 361, 1178275990.919835, 363.152187, 13.91,
-                           0.996624}));
+INSTANTIATE_TEST_SUITE_P(MrptCommon, Samples,
+                         testing::Values(Sample{"2006-01ENE-21-SENA_Telecom Faculty_one_loop_only.rawlog", 225, 361,
+                                                1137834225.713386, 59.074946, 58.04, 0.885355},
+                                         Sample{"localization_demo.rawlog", 37, 361, 1137772793.094853, 9.283349, 41.23,
+                                                0.994235},
+                                         Sample{"uwb_ro-localization_demo.rawlog", 343, 361, 1178275990.919835,
+                                                363.152187, 13.91, 0.996624}));
 
 struct CarmenSample {
   const char* name;
@@ -97,17 +97,16 @@ TEST_P(CarmenSamples, AreReadWhole) {
   EXPECT_NEAR(summary.sensors[0].longest_return_m, expected.longest_return_m, 1e-4);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Datasets, CarmenSamples,
-    testing::Values(CarmenSample{"carmen/aces-corrected.log.gz", 440, 180, 1.0, 49.91},
-                    CarmenSample{"carmen/belgioioso-corrected.log.gz", 395, 361, 0.5, 79.34},
-                    CarmenSample{"carmen/csail-corrected.log.gz", 406, 361, 0.5, 35.12},
-                    CarmenSample{"carmen/freiburg-079-corrected.log.gz", 4791, 360, 0.5, 36.62},
-                    CarmenSample{"carmen/intel-corrected.log.gz", 910, 180, 1.0, 25.38},
-                    CarmenSample{"carmen/orebro-corrected.log.gz", 237, 181, 1.0, 32.63},
-                    CarmenSample{"slam-benchmark/aces.clf.gz", 7374, 180, 1.0, 49.91},
-                    CarmenSample{"slam-benchmark/intel.clf.gz", 13631, 180, 1.0, 26.37},
-                    CarmenSample{"slam-benchmark/mit-csail.clf.gz", 1988, 361, 0.5, 42.4}));
+INSTANTIATE_TEST_SUITE_P(Datasets, CarmenSamples,
+                         testing::Values(CarmenSample{"carmen/aces-corrected.log.gz", 440, 180, 1.0, 49.91},
+                                         CarmenSample{"carmen/belgioioso-corrected.log.gz", 395, 361, 0.5, 79.34},
+                                         CarmenSample{"carmen/csail-corrected.log.gz", 406, 361, 0.5, 35.12},
+                                         CarmenSample{"carmen/freiburg-079-corrected.log.gz", 4791, 360, 0.5, 36.62},
+                                         CarmenSample{"carmen/intel-corrected.log.gz", 910, 180, 1.0, 25.38},
+                                         CarmenSample{"carmen/orebro-corrected.log.gz", 237, 181, 1.0, 32.63},
+                                         CarmenSample{"slam-benchmark/aces.clf.gz", 7374, 180, 1.0, 49.91},
+                                         CarmenSample{"slam-benchmark/intel.clf.gz", 13631, 180, 1.0, 26.37},
+                                         CarmenSample{"slam-benchmark/mit-csail.clf.gz", 1988, 361, 0.5, 42.4}));
 
 TEST(BareSamples, AreReadWithTheirGeometryGiven) {
   const char* folder = std::getenv("SHAPEMAP_DATASETS");

@@ -21,7 +21,8 @@ MatchTarget match_target(const PartialMap& map, const AlignOptions& options) {
   MatchTarget target{map, {}};
   for (const TargetScan& sequence : map.sequences()) {
     ScanFeatures features;
-    for (const ShapePoint& point : sequence.shape.points) features.tangents_rad.push_back(wrap_angle(point.tangent_rad));
+    for (const ShapePoint& point : sequence.shape.points)
+      features.tangents_rad.push_back(wrap_angle(point.tangent_rad));
     features.histograms = sequence.directions->histograms(sequence.turned_rad, options.histogram.norm);
     target.indices.emplace_back(features, options.similarity);
   }
@@ -87,9 +88,9 @@ std::string text(const Parts&... parts) {
 /// The verdict on a finished alignment.
 Alignment judged(Alignment alignment, const TrustOptions& trust) {
   if (alignment.num_correspondences < trust.min_correspondences) {
-    const std::string reason = text("only ", alignment.num_correspondences,
-                                    " correspondences support the best translation, ", trust.min_correspondences,
-                                    " are needed");
+    const std::string reason =
+        text("only ", alignment.num_correspondences, " correspondences support the best translation, ",
+             trust.min_correspondences, " are needed");
     return refused(std::move(alignment), AlignStatus::kTooFewCorrespondences, reason);
   }
   if (alignment.overlap_ratio < trust.min_overlap_ratio) {

@@ -90,8 +90,7 @@ class CarmenReader {
 
   MountPose read_mount(Words& words) {
     MountPose mount;
-    for (double* field :
-         {&mount.x_m, &mount.y_m, &mount.z_m, &mount.yaw_rad, &mount.pitch_rad, &mount.roll_rad}) {
+    for (double* field : {&mount.x_m, &mount.y_m, &mount.z_m, &mount.yaw_rad, &mount.pitch_rad, &mount.roll_rad}) {
       *field = read_finite(words, lines_, "a field of the laser's mount");
     }
     return mount;
@@ -145,7 +144,8 @@ class CarmenReader {
 
   void warn_of_angles() {
     if (!warned_of_angles_) {
-      log_.warnings.push_back(lines_.where() + ": field of view and angular resolution contradict each other; the "
+      log_.warnings.push_back(lines_.where() +
+                              ": field of view and angular resolution contradict each other; the "
                               "resolution is used");
     }
     warned_of_angles_ = true;

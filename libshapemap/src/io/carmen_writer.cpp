@@ -20,8 +20,7 @@ constexpr const char* kHeader = "# CARMEN log written by shapemap; poses are est
 bool fits_flaser(const SubScan& scan) {
   const std::optional<double> step_rad = flaser_step_rad(scan.ranges_m.size());
   return step_rad && std::abs(scan.angle_step_rad - *step_rad) < 1e-9 &&
-         std::abs(scan.first_angle_rad - kFlaserFirstAngle_rad) < 1e-9 &&
-         mount_with_heading(scan) == MountPose{};
+         std::abs(scan.first_angle_rad - kFlaserFirstAngle_rad) < 1e-9 && mount_with_heading(scan) == MountPose{};
 }
 
 /// The maximum range of all scans when FLASER lines can hold the log; nothing when they cannot. One kind of line for

@@ -52,10 +52,14 @@ Log read_log(const std::string& path, LogFormat format, const LogReadOptions& op
   validate(options);
   ByteSource source(path);
   switch (format == LogFormat::kAuto ? recognise_log_format(source) : format) {
-    case LogFormat::kRawlog: return read_rawlog(source, options);
-    case LogFormat::kCarmen: return read_carmen(source, options);
-    case LogFormat::kNist: return read_nist(source, options);
-    case LogFormat::kAuto: break;
+    case LogFormat::kRawlog:
+      return read_rawlog(source, options);
+    case LogFormat::kCarmen:
+      return read_carmen(source, options);
+    case LogFormat::kNist:
+      return read_nist(source, options);
+    case LogFormat::kAuto:
+      break;
   }
   throw InputError(path + ": unknown log format");
 }

@@ -78,13 +78,20 @@ class NistReader {
     }
     const std::string_view length = words.next();
     const std::string_view angle = words.next();
-    if (length == "m") metres_per_unit_ = 1.0;
-    else if (length == "cm") metres_per_unit_ = 0.01;
-    else if (length == "mm") metres_per_unit_ = 0.001;
-    else throw lines_.error("unit of length is '" + std::string(length) + "', expected m, cm or mm");
-    if (angle == "deg") radians_per_unit_ = kDegree;
-    else if (angle == "rad") radians_per_unit_ = 1.0;
-    else throw lines_.error("unit of angle is '" + std::string(angle) + "', expected deg or rad");
+    if (length == "m")
+      metres_per_unit_ = 1.0;
+    else if (length == "cm")
+      metres_per_unit_ = 0.01;
+    else if (length == "mm")
+      metres_per_unit_ = 0.001;
+    else
+      throw lines_.error("unit of length is '" + std::string(length) + "', expected m, cm or mm");
+    if (angle == "deg")
+      radians_per_unit_ = kDegree;
+    else if (angle == "rad")
+      radians_per_unit_ = 1.0;
+    else
+      throw lines_.error("unit of angle is '" + std::string(angle) + "', expected deg or rad");
     expect_end(words, lines_);
   }
 

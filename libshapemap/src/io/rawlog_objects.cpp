@@ -50,9 +50,9 @@ CObservation2DRangeScan::Ptr scan_to_mrpt(const SubScan& scan, double timestamp_
   out->aperture = static_cast<float>(std::abs(span_rad));
   out->rightToLeft = scan.angle_step_rad >= 0.0;
   if (scan.max_range_m > 0.0) out->maxRange = static_cast<float>(scan.max_range_m);
-  out->sensorPose = mrpt::poses::CPose3D(mount.x_m, mount.y_m, mount.z_m, mount.yaw_rad, mount.pitch_rad,
-                                         mount.roll_rad) +
-                    mrpt::poses::CPose3D(0.0, 0.0, 0.0, middle_rad, 0.0, 0.0);
+  out->sensorPose =
+      mrpt::poses::CPose3D(mount.x_m, mount.y_m, mount.z_m, mount.yaw_rad, mount.pitch_rad, mount.roll_rad) +
+      mrpt::poses::CPose3D(0.0, 0.0, 0.0, middle_rad, 0.0, 0.0);
   out->sensorLabel = scan.sensor_label;
   out->timestamp = mrpt_time(timestamp_s);
   out->resizeScan(num_beams);

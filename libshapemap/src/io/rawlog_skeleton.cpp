@@ -79,10 +79,17 @@ void pass_pose(Cursor& cursor) {
   if (header.name != "CPose3D") cursor.fail("no sensor pose where one should be");
   switch (header.version) {
     case 0:
-    case 1: pass_matrix(cursor); break;
-    case 2: cursor.advance(7 * sizeof(double)); break;   // position and quaternion
-    case 3: cursor.advance(12 * sizeof(double)); break;  // position and rotation matrix
-    default: cursor.fail("a sensor pose of unknown version " + std::to_string(header.version));
+    case 1:
+      pass_matrix(cursor);
+      break;
+    case 2:
+      cursor.advance(7 * sizeof(double));
+      break;  // position and quaternion
+    case 3:
+      cursor.advance(12 * sizeof(double));
+      break;  // position and rotation matrix
+    default:
+      cursor.fail("a sensor pose of unknown version " + std::to_string(header.version));
   }
   cursor.end_mark();
 }
@@ -101,10 +108,10 @@ void pass_scan(Cursor& cursor) {
   const auto num_beams = cursor.take<std::uint32_t>();
   if (num_beams > kMostBeams) cursor.fail("a laser scan of " + std::to_string(num_beams) + " beams");
   cursor.advance(num_beams * sizeof(float));
-  if (version >= 1) cursor.advance(num_beams);          // valid flags
-  if (version >= 2) cursor.advance(sizeof(float));      // standard deviation
+  if (version >= 1) cursor.advance(num_beams);              // valid flags
+  if (version >= 2) cursor.advance(sizeof(float));          // standard deviation
   if (version >= 3) cursor.advance(sizeof(std::uint64_t));  // timestamp
-  if (version >= 4) cursor.advance(sizeof(float));      // beam aperture
+  if (version >= 4) cursor.advance(sizeof(float));          // beam aperture
   if (version >= 5) {
     const auto length = cursor.take<std::uint32_t>();
     if (length > kLongestLabel) cursor.fail("a sensor label of " + std::to_string(length) + " bytes");

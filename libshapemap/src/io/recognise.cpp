@@ -11,8 +11,8 @@ namespace shapemap {
 namespace {
 
 constexpr std::size_t kLookAhead = 1U << 20U;
-constexpr std::array<std::string_view, 11> kCarmenWords{"FLASER",  "RLASER", "ROBOTLASER1", "ROBOTLASER2",
-                                                        "PARAM",   "SYNC",   "ODOM",        "TRUEPOS",
+constexpr std::array<std::string_view, 11> kCarmenWords{"FLASER",    "RLASER",  "ROBOTLASER1", "ROBOTLASER2",
+                                                        "PARAM",     "SYNC",    "ODOM",        "TRUEPOS",
                                                         "RAWLASER1", "NMEAGGA", "MARKER"};
 constexpr const char* kExpected =
     "expected an MRPT rawlog, a CARMEN log (FLASER or ROBOTLASER1 lines), a text log that begins with "
@@ -58,8 +58,8 @@ LogFormat recognise_log_format(ByteSource& source) {
     const std::string_view line = content.substr(begin, end - begin);
     for (std::size_t i = 0; i < line.size(); ++i) {
       if (!is_binary(line[i])) continue;
-      throw InputError(source.path() + ": unknown binary format (byte " + std::to_string(begin + i) +
-                       " is no text); " + kExpected);
+      throw InputError(source.path() + ": unknown binary format (byte " + std::to_string(begin + i) + " is no text); " +
+                       kExpected);
     }
     const LogFormat format = format_of_line(line);
     if (format != LogFormat::kAuto) return format;

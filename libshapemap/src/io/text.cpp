@@ -16,9 +16,9 @@ std::optional<Number> parse_whole(std::string_view word) {
   Number value{};
   const std::from_chars_result end = std::from_chars(word.data(), word.data() + word.size(), value);
   if (end.ptr != word.data() + word.size() || word.empty()) return std::nullopt;
-  if (end.ec == std::errc::result_out_of_range) return std::numeric_limits<Number>::has_infinity
-                                                            ? std::numeric_limits<Number>::infinity()
-                                                            : std::numeric_limits<Number>::max();
+  if (end.ec == std::errc::result_out_of_range)
+    return std::numeric_limits<Number>::has_infinity ? std::numeric_limits<Number>::infinity()
+                                                     : std::numeric_limits<Number>::max();
   if (end.ec != std::errc{}) return std::nullopt;
   return value;
 }

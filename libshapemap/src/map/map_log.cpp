@@ -62,8 +62,8 @@ class Chain {
     }
     if (outcome.starts_fragment) result.fragments.emplace_back();
     outcome.fragment = static_cast<int>(result.fragments.size()) - 1;
-    recent_.push_back({placed.map_from_robot, target_scan(moved(shape, {}, placed.robot_from_sub_scan),
-                                                          options_.align.histogram.radius_m)});
+    recent_.push_back({placed.map_from_robot,
+                       target_scan(moved(shape, {}, placed.robot_from_sub_scan), options_.align.histogram.radius_m)});
     if (recent_.size() > static_cast<std::size_t>(options_.chain.target_scans)) recent_.pop_front();
     result.fragments.back().positions.push_back(std::move(placed));
   }

@@ -29,7 +29,8 @@ std::vector<IndexPair> longest_common_subsequence(const BitMatrix& matches) {
   BitMatrix no_step(matches.rows() + 1, matches.columns());
   const std::size_t words = matches.words_per_row();
   std::fill(no_step.row(0), no_step.row(0) + words, ~Word{0});
-  for (std::size_t i = 0; i < matches.rows(); ++i) advance_row(no_step.row(i), matches.row(i), words, no_step.row(i + 1));
+  for (std::size_t i = 0; i < matches.rows(); ++i)
+    advance_row(no_step.row(i), matches.row(i), words, no_step.row(i + 1));
 
   std::vector<IndexPair> pairs;
   std::size_t i = matches.rows();

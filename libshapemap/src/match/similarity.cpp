@@ -18,16 +18,13 @@ constexpr std::size_t kLevels = static_cast<std::size_t>(kHistogramScale) + 2;
 constexpr std::size_t kBlock = 2;
 
 /// Counters for 64 * kBlock target points, one bit of each to a word, that stay at "too many" once they overflow.
+/// They count to 2 ^ kPlanes - 1.
+template <std::size_t kPlanes>
 class BitCounters {
  public:
-  /// Counts up to `highest` exactly.
-  explicit BitCounters(int highest) : highest_(static_cast<unsigned>(highest)) {
-    while ((1U << num_planes_) <= highest_) ++num_planes_;
-  }
-
   /// Adds 1 wherever a bit of `ones` is set.
   void add(std::array<Word, kBlock> ones) {
-    for (std::size_t plane = 0; plane < num_planes_; ++plane) {
+    for (std::size_t plane = 0; plane < kPlanes; ++plane) {
       for (std::size_t w = 0; w < kBlock; ++w) {
         const Word carry = planes_[plane][w] & ones[w];
         planes_[plane][w] ^= ones[w];
@@ -38,11 +35,11 @@ class BitCounters {
   }
 
   /// The points whose count is `highest` or less.
-  Word not_above(std::size_t w) const {
+  Word not_above(unsigned highest, std::size_t w) const {
     Word below = 0;
     Word equal = ~Word{0};
-    for (std::size_t plane = num_planes_; plane-- > 0;) {
-      const Word limit = ((highest_ >> plane) & 1U) ? ~Word{0} : Word{0};
+    for (std::size_t plane = kPlanes; plane-- > 0;) {
+      const Word limit = ((highest >> plane) & 1U) ? ~Word{0} : Word{0};
       below |= equal & limit & ~planes_[plane][w];
       equal &= ~(limit ^ planes_[plane][w]);
     }
@@ -50,12 +47,31 @@ class BitCounters {
   }
 
  private:
-  static constexpr std::size_t kMaxPlanes = 6;  // enough for all 36 bins
-  std::array<std::array<Word, kBlock>, kMaxPlanes> planes_{};
+  std::array<std::array<Word, kBlock>, kPlanes> planes_{};
   std::array<Word, kBlock> overflow_{};
-  std::size_t num_planes_ = 0;
-  unsigned highest_;
 };
+
+/// For each bin of one query point: which target points are too high, and which are high enough.
+struct BinRows {
+  std::array<const Word*, kHistogramBins> too_high{};
+  std::array<const Word*, kHistogramBins> high_enough{};
+};
+
+/// Words [first, last) of `similar`: the points of which `highest` bins or fewer differ.
+template <std::size_t kPlanes>
+void few_differences(const BinRows& rows, unsigned highest, std::size_t first, std::size_t last, Word* similar) {
+  for (std::size_t block = first / kBlock * kBlock; block < last; block += kBlock) {
+    BitCounters<kPlanes> differing;
+    for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
+      std::array<Word, kBlock> ones;
+      for (std::size_t w = 0; w < kBlock; ++w) {
+        ones[w] = rows.too_high[bin][block + w] | ~rows.high_enough[bin][block + w];
+      }
+      differing.add(ones);
+    }
+    for (std::size_t w = 0; w < kBlock; ++w) similar[block + w] = differing.not_above(highest, w);
+  }
+}
 
 /// Index of the lowest bit that is set in `word`, which is not 0.
 std::size_t lowest_bit(Word word) {
@@ -106,32 +122,29 @@ SimilarityIndex::SimilarityIndex(const ScanFeatures& target, const SimilarityOpt
 
 void SimilarityIndex::match_words(const AngularHistogram& query, std::size_t first, std::size_t last,
                                   Words& similar) const {
-  // A target bin differs when it is above the query's bin and the tolerance, or not at least the bin less the tolerance.
-  std::array<const Word*, kHistogramBins> too_high{};
-  std::array<const Word*, kHistogramBins> high_enough{};
+  // A target bin differs when it is above the query's bin and the tolerance, or not at least the bin less the
+  // tolerance.
+  BinRows rows;
   for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
     const int above = std::min(query.bins[bin] + bin_tolerance_steps_ + 1, static_cast<int>(kLevels) - 1);
     const int least = std::max(query.bins[bin] - bin_tolerance_steps_, 0);
-    too_high[bin] = at_least_.row(bin * kLevels + static_cast<std::size_t>(above));
-    high_enough[bin] = at_least_.row(bin * kLevels + static_cast<std::size_t>(least));
+    rows.too_high[bin] = at_least_.row(bin * kLevels + static_cast<std::size_t>(above));
+    rows.high_enough[bin] = at_least_.row(bin * kLevels + static_cast<std::size_t>(least));
   }
-  for (std::size_t block = first / kBlock * kBlock; block < last; block += kBlock) {
-    BitCounters differing(options_.max_differing_bins);
-    for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
-      std::array<Word, kBlock> ones;
-      for (std::size_t w = 0; w < kBlock; ++w) ones[w] = too_high[bin][block + w] | ~high_enough[bin][block + w];
-      differing.add(ones);
-    }
-    for (std::size_t w = 0; w < kBlock; ++w) similar[block + w] = differing.not_above(w);
+  const auto highest = static_cast<unsigned>(options_.max_differing_bins);
+  if (highest < 4) {  // two planes hold the paper's limit
+    few_differences<2>(rows, highest, first, last, similar.data());
+  } else {
+    few_differences<6>(rows, highest, first, last, similar.data());
   }
 }
 
 void SimilarityIndex::match_range(const AngularHistogram& query, double from_rad, double to_rad, Words& similar,
                                   Word* row) const {
-  const auto begin = static_cast<std::size_t>(
-      std::lower_bound(tangents_rad_.begin(), tangents_rad_.end(), from_rad) - tangents_rad_.begin());
-  const auto end = static_cast<std::size_t>(
-      std::upper_bound(tangents_rad_.begin(), tangents_rad_.end(), to_rad) - tangents_rad_.begin());
+  const auto begin = static_cast<std::size_t>(std::lower_bound(tangents_rad_.begin(), tangents_rad_.end(), from_rad) -
+                                              tangents_rad_.begin());
+  const auto end = static_cast<std::size_t>(std::upper_bound(tangents_rad_.begin(), tangents_rad_.end(), to_rad) -
+                                            tangents_rad_.begin());
   if (begin >= end) return;
   const std::size_t first_word = begin / BitMatrix::kWordBits;
   const std::size_t last_word = (end - 1) / BitMatrix::kWordBits;

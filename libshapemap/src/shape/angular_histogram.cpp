@@ -27,6 +27,7 @@ AngularHistogram normalised(const std::array<int, kHistogramBins>& counts, Histo
   const double whole = divisor(counts, norm);
   if (whole <= 0.0) return histogram;
   for (std::size_t b = 0; b < kHistogramBins; ++b) {
+    if (counts[b] == 0) continue;  // most of them
     histogram.bins[b] = static_cast<std::uint8_t>(std::lround(kHistogramScale * counts[b] / whole));
   }
   return histogram;
@@ -41,9 +42,8 @@ NeighbourDirections::NeighbourDirections(const Shape& shape, double radius_m) {
   };
   std::vector<std::size_t> order(shape.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return shape.points[a].p_m.x() < shape.points[b].p_m.x();
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return shape.points[a].p_m.x() < shape.points[b].p_m.x(); });
   std::vector<Pair> pairs;
   std::vector<std::size_t> counts(shape.size(), 0);
   const double radius2 = radius_m * radius_m;

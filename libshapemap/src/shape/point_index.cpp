@@ -8,8 +8,13 @@
 
 namespace shapemap {
 
+namespace {
+constexpr std::size_t kLeafPoints = 16;  // measured: quicker to build and to search than the default of 10
+}  // namespace
+
 struct PointIndex::Tree {
-  explicit Tree(std::vector<Point2> p) : points(std::move(p)), index(2, *this) {
+  explicit Tree(std::vector<Point2> p)
+      : points(std::move(p)), index(2, *this, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafPoints)) {
     if (!points.empty()) index.buildIndex();
   }
 

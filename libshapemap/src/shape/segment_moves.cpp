@@ -85,9 +85,8 @@ std::vector<WorkingSegment> split_at_gaps(const std::vector<ScanPoint>& points, 
   for (WorkingSegment& segment : segments) {
     const Point2 along = segment.line.direction();
     std::vector<std::size_t> ordered = segment.support;
-    std::stable_sort(ordered.begin(), ordered.end(), [&](std::size_t a, std::size_t b) {
-      return along.dot(points[a].p_m) < along.dot(points[b].p_m);
-    });
+    std::stable_sort(ordered.begin(), ordered.end(),
+                     [&](std::size_t a, std::size_t b) { return along.dot(points[a].p_m) < along.dot(points[b].p_m); });
     std::vector<std::size_t> cuts{0};
     for (std::size_t k = 1; k < ordered.size(); ++k) {
       const ScanPoint& a = points[ordered[k - 1]];

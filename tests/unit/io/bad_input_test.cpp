@@ -78,10 +78,10 @@ TEST(BadInput, CutGzipGivesWhatIsWholeAndAWarning) {
   const Log cut = read_log(folder.write("cut.gz", whole.substr(0, whole.size() / 2)));
   EXPECT_GT(cut.positions.size(), 10U);
   EXPECT_LT(cut.positions.size(), 50U);
-  EXPECT_THAT(cut.warnings,
-              ElementsAre(AllOf(HasSubstr("cut.gz: the gzip data is cut off at byte " +
-                                          std::to_string(whole.size() / 2)),
-                                HasSubstr("the " + std::to_string(cut.positions.size()) + " positions"))));
+  EXPECT_THAT(
+      cut.warnings,
+      ElementsAre(AllOf(HasSubstr("cut.gz: the gzip data is cut off at byte " + std::to_string(whole.size() / 2)),
+                        HasSubstr("the " + std::to_string(cut.positions.size()) + " positions"))));
   for (std::size_t i = 0; i < cut.positions.size(); ++i) {
     EXPECT_EQ(cut.positions[i].sub_scans[0].ranges_m, all.positions[i].sub_scans[0].ranges_m);
   }
@@ -128,12 +128,14 @@ TEST(BadInput, DamagedGzipIsNeverTakenForWhole) {
 
 TEST(BadInput, RandomEditsOfTextLogsNeverDoMoreThanAnInputError) {
   const TempFolder folder;
-  const std::string nist = "shapemap-scans 1\nunits cm deg\nsensor l beams 3 first_angle -50 "
-                           "angle_step 25 max_range 2000 mount 1 2 3 4 5 6\n"
-                           "position 1 reference 1 2 3\nscan l heading 0 ranges 1 2 -\n";
-  const std::string robot_laser = "# shapemap mount 1 2 3 4 5 6\nROBOTLASER1 0 -1 2 1 8 0 0 3 1 2 3 1 5 "
-                                  "0 0 0 0 0 0 0 0 0 0 0 5 h 1\n# shapemap same-position\n"
-                                  "FLASER 3 1 2 3 0 0 0 0 0 0 1 h 1\n";
+  const std::string nist =
+      "shapemap-scans 1\nunits cm deg\nsensor l beams 3 first_angle -50 "
+      "angle_step 25 max_range 2000 mount 1 2 3 4 5 6\n"
+      "position 1 reference 1 2 3\nscan l heading 0 ranges 1 2 -\n";
+  const std::string robot_laser =
+      "# shapemap mount 1 2 3 4 5 6\nROBOTLASER1 0 -1 2 1 8 0 0 3 1 2 3 1 5 "
+      "0 0 0 0 0 0 0 0 0 0 0 5 h 1\n# shapemap same-position\n"
+      "FLASER 3 1 2 3 0 0 0 0 0 0 1 h 1\n";
   const std::string alphabet = "0123456789-+.e# \n\tnaif\r";
   std::mt19937 rng(5);
   LogReadOptions options;

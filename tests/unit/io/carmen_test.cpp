@@ -113,8 +113,8 @@ TEST_F(Carmen, ReadingsThatAreNoDistancesAreNoReturns) {
 }
 
 TEST_F(Carmen, SickErrorCodesAreNoReturns) {
-  const SubScan scan = read("FLASER 180 81.91 80.5" + times(178, "1.5") + " 0 0 0 0 0 0 1 h 1\n")
-                           .positions.at(0).sub_scans.at(0);
+  const SubScan scan =
+      read("FLASER 180 81.91 80.5" + times(178, "1.5") + " 0 0 0 0 0 0 1 h 1\n").positions.at(0).sub_scans.at(0);
   EXPECT_EQ(scan.max_range_m, 81.0);
   EXPECT_EQ(returns_in_robot(scan, {}).size(), 179U);
 }
@@ -135,8 +135,8 @@ TEST_F(Carmen, ADriversRoundLimitIsNoReturnButAWallIsNot) {
 }
 
 TEST_F(Carmen, SickCodesInMillimetresAreNoReturns) {
-  const Log log = read("FLASER 180" + times(160, "3.21") + times(10, "32.763") +
-                       times(10, "32.767") + " 0 0 0 0 0 0 1 h 1\n");
+  const Log log =
+      read("FLASER 180" + times(160, "3.21") + times(10, "32.763") + times(10, "32.767") + " 0 0 0 0 0 0 1 h 1\n");
   EXPECT_FLOAT_EQ(static_cast<float>(log.positions.at(0).sub_scans.at(0).max_range_m), 32.763F);
   EXPECT_EQ(returns_in_robot(log.positions[0].sub_scans[0], {}).size(), 160U);
 }

@@ -27,11 +27,12 @@ class NistText : public testing::Test {
 };
 
 TEST_F(NistText, SaysAllThereIsToSay) {
-  const Log log = read("# remark\r\nshapemap-scans 1\r\nunits cm deg  # and so on\r\n\r\n"
-                       "sensor l beams 3 first_angle -50 angle_step 25 max_range 2000 min_range 10 "
-                       "mount 10 20 30 90 5 180\r\n"
-                       "position 1.5 reference 100 -200 90\r\nscan l heading 0 ranges 100 - 300\r\n"
-                       "scan l heading -90 ranges 110 nan 310\r\nposition 2\r\nscan l heading 0 ranges 1 2 3\r\n");
+  const Log log = read(
+      "# remark\r\nshapemap-scans 1\r\nunits cm deg  # and so on\r\n\r\n"
+      "sensor l beams 3 first_angle -50 angle_step 25 max_range 2000 min_range 10 "
+      "mount 10 20 30 90 5 180\r\n"
+      "position 1.5 reference 100 -200 90\r\nscan l heading 0 ranges 100 - 300\r\n"
+      "scan l heading -90 ranges 110 nan 310\r\nposition 2\r\nscan l heading 0 ranges 1 2 3\r\n");
   EXPECT_EQ(log.format, "nist");
   EXPECT_TRUE(log.warnings.empty());
   ASSERT_EQ(log.positions.size(), 2U);
@@ -67,8 +68,9 @@ TEST_F(NistText, UnitsAreMetresAndDegreesUnlessSaid) {
 }
 
 TEST_F(NistText, OneSensorCanBePicked) {
-  const std::string content = "shapemap-scans 1\nsensor a beams 2 angle_step 1\nsensor b beams 2 angle_step 1\n"
-                              "position 0\nscan a heading 0 ranges 1 2\nscan b heading 0 ranges 3 4\n";
+  const std::string content =
+      "shapemap-scans 1\nsensor a beams 2 angle_step 1\nsensor b beams 2 angle_step 1\n"
+      "position 0\nscan a heading 0 ranges 1 2\nscan b heading 0 ranges 3 4\n";
   EXPECT_EQ(read(content).positions.at(0).sub_scans.size(), 2U);
   LogReadOptions options;
   options.sensor_label = "b";

@@ -60,8 +60,8 @@ TEST_F(Rawlog, ScansOfAFrameAreSubScansOfOnePosition) {
   auto comment = mrpt::obs::CObservationComment::Create();
   comment->text = "\x88\x88 not the end";
   const Log log = read(mrpt::obs::CActionCollection(), frame({mrpt_scan("a", 5.5), comment, mrpt_scan("b", 6.0)}),
-                       mrpt::obs::CActionCollection(), frame({comment}), frame({}),
-                       mrpt::obs::CActionCollection(), frame({comment, mrpt_scan("a", 7.0), comment}));
+                       mrpt::obs::CActionCollection(), frame({comment}), frame({}), mrpt::obs::CActionCollection(),
+                       frame({comment, mrpt_scan("a", 7.0), comment}));
   EXPECT_EQ(log.format, "rawlog");
   EXPECT_TRUE(log.warnings.empty());
   ASSERT_EQ(log.positions.size(), 2U);
@@ -123,9 +123,7 @@ TEST_F(Rawlog, AScanWithoutBeamsIsLeftOut) {
   EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("1 scans without beams")));
 }
 
-TEST_F(Rawlog, WithoutLasersSaysSo) {
-  EXPECT_THROW(read(mrpt::obs::CActionCollection(), frame({})), InputError);
-}
+TEST_F(Rawlog, WithoutLasersSaysSo) { EXPECT_THROW(read(mrpt::obs::CActionCollection(), frame({})), InputError); }
 
 }  // namespace
 }  // namespace shapemap

@@ -17,7 +17,6 @@ Segments paper_segment_filter(const Segments& segments, FilterOptions options) {
   return best.empty() ? Segments{} : best.front();
 }
 
-
 struct Case {
   Correspondences correspondences;
   FilterOptions options;

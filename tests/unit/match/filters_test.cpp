@@ -17,7 +17,6 @@ Segments paper_segment_filter(const Segments& segments, FilterOptions options) {
   return best.empty() ? Segments{} : best.front();
 }
 
-
 using test::IsNearPoint;
 
 constexpr FilterOptions kPaper{10 * kDegree, 0.30, 2.0, 0.20};

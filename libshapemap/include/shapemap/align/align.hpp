@@ -66,16 +66,16 @@ struct AlignOptions {
   OverlapOptions overlap;
   IcpOptions icp;
   TrustOptions trust;
-  int threads = 1;         ///< does not change the result
-  int min_points = 10;     ///< ShapeOptions::min_points
+  int threads = 1;      ///< does not change the result
+  int min_points = 10;  ///< ShapeOptions::min_points
 };
 
 /// What one rotation of the grid led to.
 struct RotationMatch {
   double rotation_rad = 0.0;
-  Correspondences lcs;         ///< hypotheses
-  Correspondences spread;      ///< those that the collinear filter passed
-  Segments segments;           ///< those that the segment filter passed
+  Correspondences lcs;     ///< hypotheses
+  Correspondences spread;  ///< those that the collinear filter passed
+  Segments segments;       ///< those that the segment filter passed
   SegmentTranslation translation;
   ScanOverlap overlap;
 
@@ -96,8 +96,7 @@ std::vector<double> rotation_grid(const RotationOptions& options);
 
 /// The pose of `query` in the frame of `target`, starting from the same heading. Never throws for scans that do not
 /// match: see Alignment::status. `trace`, if given, receives everything that led to it.
-Alignment align(const PartialMap& target, const Shape& query, const AlignOptions& options,
-                AlignTrace* trace = nullptr);
+Alignment align(const PartialMap& target, const Shape& query, const AlignOptions& options, AlignTrace* trace = nullptr);
 
 /// The same against a single scan.
 Alignment align(const Shape& reference, const Shape& query, const AlignOptions& options, AlignTrace* trace = nullptr);

@@ -36,7 +36,8 @@ struct IcpOptions {
           self.gate);
     visit(Field{"icp-gate-factor", "that multiple", 0.1, 100}, self.gate_factor);
     visit(Field{"icp-decoupled", "ICP on each sub-scan by itself after ICP on the position"}, self.decoupled);
-    visit(Field{"icp-decoupled-max-shift-m", "a larger correction of a sub-scan is no small error, and undone [m]", 0, 10},
+    visit(Field{"icp-decoupled-max-shift-m", "a larger correction of a sub-scan is no small error, and undone [m]", 0,
+                10},
           self.decoupled_max_shift_m);
     visit(Field{"icp-decoupled-max-turn-deg", "likewise [deg]", 0, 180, kDegree}, self.decoupled_max_turn_rad);
   }

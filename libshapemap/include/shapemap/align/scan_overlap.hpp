@@ -28,7 +28,8 @@ struct OverlapOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit(Field{"overlap-slack-m", "overlapping points are within the mean distance and this [m]", 0, 10}, self.slack_m);
+    visit(Field{"overlap-slack-m", "overlapping points are within the mean distance and this [m]", 0, 10},
+          self.slack_m);
     visit(Field{"overlap-tangent-deg", "and have tangents within this angle [deg]", 0, 180, kDegree},
           self.tangent_tolerance_rad);
     visit(Field{"overlap-rule", "the partner of a query point"}, self.rule);

@@ -70,10 +70,10 @@ struct LogSummary {
     std::size_t num_sub_scans = 0;
     std::size_t num_beams = 0;  ///< of the first sub-scan
     double fov_rad = 0.0;
-    double max_range_m = 0.0;         ///< as the log says; 0: it does not
+    double max_range_m = 0.0;  ///< as the log says; 0: it does not
     double shortest_return_m = 0.0;
     double longest_return_m = 0.0;
-    double return_ratio = 0.0;        ///< share of readings that hit something
+    double return_ratio = 0.0;  ///< share of readings that hit something
   };
   std::string format;
   std::size_t num_positions = 0;

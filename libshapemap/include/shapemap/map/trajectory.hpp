@@ -29,10 +29,10 @@ struct Fragment {
 struct PositionResult {
   std::size_t position_index = 0;
   double timestamp_s = 0.0;
-  int fragment = -1;         ///< index into MapResult::fragments; -1: no usable shape, in no fragment
+  int fragment = -1;  ///< index into MapResult::fragments; -1: no usable shape, in no fragment
   bool starts_fragment = false;
-  Alignment alignment;       ///< against the scans before it; meaningless for the first position
-  std::string reason;        ///< empty when aligned; else why not, one line
+  Alignment alignment;  ///< against the scans before it; meaningless for the first position
+  std::string reason;   ///< empty when aligned; else why not, one line
 };
 
 /// Seconds spent per stage, summed over threads where a stage is threaded.
@@ -48,7 +48,7 @@ struct MapResult {
   std::vector<PositionResult> positions;  ///< one per position of the log that was looked at
   int largest_fragment = -1;              ///< the fragment that makes the map; -1: none
   StageTimes times;
-  bool interrupted = false;               ///< the observer asked to stop; the rest of the log was not looked at
+  bool interrupted = false;  ///< the observer asked to stop; the rest of the log was not looked at
 
   /// Positions of the largest fragment; empty when there is none.
   const std::vector<PlacedPosition>& placed() const;

@@ -11,11 +11,11 @@ namespace shapemap {
 
 /// Two points that are taken for the same place: a hypothesis until the filters have passed it.
 struct Correspondence {
-  Point2 query_m{0.0, 0.0};   ///< turned by the rotation under test, not translated
+  Point2 query_m{0.0, 0.0};  ///< turned by the rotation under test, not translated
   Point2 target_m{0.0, 0.0};
   double query_tangent_rad = 0.0;  ///< turned likewise
   double target_tangent_rad = 0.0;
-  IndexPair indices;          ///< into the query shape and the target scan's shape
+  IndexPair indices;  ///< into the query shape and the target scan's shape
   std::size_t target_scan = 0;
 
   Point2 translation_m() const { return target_m - query_m; }

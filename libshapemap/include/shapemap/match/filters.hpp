@@ -26,7 +26,8 @@ struct FilterOptions {
     visit(Field{"segment-distance-factor", "a segment may be this many times worse than the main one, plus", 0, 100},
           self.segment_distance_factor);
     visit(Field{"segment-distance-slack-m", "this much [m]", 0, 100}, self.segment_distance_slack_m);
-    visit(Field{"main-segments", "best main segments, with translations of their own, that go on to the overlap", 1, 1000},
+    visit(Field{"main-segments", "best main segments, with translations of their own, that go on to the overlap", 1,
+                1000},
           self.main_segments);
   }
 };
@@ -51,9 +52,9 @@ std::vector<Segments> segment_filter(const Segments& segments, const FilterOptio
 /// A translation of the turned query, and what supports it.
 struct SegmentTranslation {
   Point2 target_from_query_m{0.0, 0.0};
-  double mean_distance_m = 0.0;   ///< within the segment that gave the translation
-  int num_correspondences = 0;    ///< point pairs within that distance; 0: there was no segment
-  Correspondences kept;           ///< those pairs
+  double mean_distance_m = 0.0;  ///< within the segment that gave the translation
+  int num_correspondences = 0;   ///< point pairs within that distance; 0: there was no segment
+  Correspondences kept;          ///< those pairs
 };
 
 /// Segment-wise translation: of the mean translations of the segments, the one that keeps most point pairs within its

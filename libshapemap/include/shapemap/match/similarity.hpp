@@ -78,11 +78,11 @@ class SimilarityIndex {
   void match_words(const AngularHistogram& query, std::size_t first, std::size_t last, Words& similar) const;
 
   SimilarityOptions options_;
-  int bin_tolerance_steps_;            ///< in steps of the stored bins
-  std::vector<std::size_t> order_;     ///< target points by ascending tangent in [-pi, pi]
-  std::vector<double> tangents_rad_;   ///< in that order
-  /// A row for each bin and level: the points, in that order, whose bin is at that level or above. Differing bins of one
-  /// query point and 64 target points are then counted at once, with bits side by side.
+  int bin_tolerance_steps_;           ///< in steps of the stored bins
+  std::vector<std::size_t> order_;    ///< target points by ascending tangent in [-pi, pi]
+  std::vector<double> tangents_rad_;  ///< in that order
+  /// A row for each bin and level: the points, in that order, whose bin is at that level or above. Differing bins of
+  /// one query point and 64 target points are then counted at once, with bits side by side.
   BitMatrix at_least_;
 };
 

@@ -11,8 +11,8 @@
 namespace shapemap {
 
 struct ReturnOptions {
-  double min_range_m = 0.0;                ///< 0: what the log says
-  double max_range_m = 0.0;                ///< 0: what the log says
+  double min_range_m = 0.0;  ///< 0: what the log says
+  double max_range_m = 0.0;  ///< 0: what the log says
   double max_mount_tilt_rad = 30 * kDegree;
 
   template <class Self, class Visit>
@@ -27,7 +27,7 @@ struct ReturnOptions {
 /// What a beam hit.
 struct Return {
   Point2 p_in_robot_m;
-  std::size_t beam = 0;   ///< index into SubScan::ranges_m
+  std::size_t beam = 0;  ///< index into SubScan::ranges_m
   double range_m = 0.0;
 };
 

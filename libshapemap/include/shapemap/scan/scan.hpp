@@ -25,7 +25,7 @@ struct MountPose {
 /// One sweep of one laser. Beam i points at `first_angle_rad + i * angle_step_rad` in the sensor's plane
 /// (0 = sensor's x axis, counterclockwise positive); the step is negative for a clockwise sensor.
 struct SubScan {
-  std::vector<float> ranges_m;       ///< as recorded; NaN where the sensor itself says "no return"
+  std::vector<float> ranges_m;  ///< as recorded; NaN where the sensor itself says "no return"
   double first_angle_rad = 0.0;
   double angle_step_rad = 0.0;
   double min_range_m = 0.0;          ///< shorter readings are no returns
@@ -34,9 +34,7 @@ struct SubScan {
   double nominal_heading_rad = 0.0;  ///< turn of the robot, or of the sensor on it, since the position's first sub-scan
   std::string sensor_label;
 
-  double beam_angle_rad(std::size_t beam) const {
-    return first_angle_rad + static_cast<double>(beam) * angle_step_rad;
-  }
+  double beam_angle_rad(std::size_t beam) const { return first_angle_rad + static_cast<double>(beam) * angle_step_rad; }
 };
 
 /// One place where the robot stood: the sub-scans taken there make one complete scan.

@@ -62,7 +62,7 @@ class NeighbourDirections {
   std::vector<AngularHistogram> histograms(double rotation_rad, HistogramNorm norm) const;
 
  private:
-  std::vector<std::size_t> first_;       ///< of each point in directions_rad_; one more at the end
+  std::vector<std::size_t> first_;  ///< of each point in directions_rad_; one more at the end
   std::vector<double> directions_rad_;
 };
 

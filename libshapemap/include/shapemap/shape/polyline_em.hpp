@@ -29,7 +29,8 @@ struct PolylineOptions {
     visit(Field{"em-sigma-m", "spread of points about their segment [m]", 0.001, 1}, self.em_sigma_m);
     visit(Field{"em-max-iterations", "rounds of EM, splitting and merging", 0, 1000}, self.em_max_iterations);
     visit(Field{"min-support", "points that a segment needs", 2, 1000}, self.min_support);
-    visit(Field{"merge-angle-deg", "segments within this angle may be one [deg]", 0, 90, kDegree}, self.merge_angle_rad);
+    visit(Field{"merge-angle-deg", "segments within this angle may be one [deg]", 0, 90, kDegree},
+          self.merge_angle_rad);
   }
 };
 
@@ -51,8 +52,8 @@ struct ScanPoint {
 };
 
 struct PolylineFit {
-  std::vector<LineSegment> segments;    ///< in scan order
-  std::vector<int> closest_segment;     ///< per point; -1 only when there are no segments
+  std::vector<LineSegment> segments;  ///< in scan order
+  std::vector<int> closest_segment;   ///< per point; -1 only when there are no segments
   int iterations = 0;
 };
 
