@@ -20,6 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
 from shapemap_sim.poses import compose, inverse
 from shapemap_sim.rates import wilson_interval
 
@@ -79,7 +80,7 @@ def score_log(path: Path, cli: Path, arguments: list[str]) -> LogScore:
         report_path = Path(folder) / "report.json"
         command = [cli, "--carmen", path, "--out", Path(folder) / "map.png", "--report", report_path, "--quiet"]
         command += arguments
-        done = subprocess.run(list(map(str, command)), capture_output=True, text=True)
+        done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
         if done.returncode not in (0, 4):
             raise RuntimeError(f"{path.name}: {(done.stderr.strip().splitlines() or ['no message'])[-1]}")
         report = json.loads(report_path.read_text(encoding="utf-8"))

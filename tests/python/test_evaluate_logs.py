@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+
 from evaluate_logs import LogScore, markdown, pair_errors, reference_poses
 
 
