@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace shapemap {
 namespace {
@@ -22,7 +21,7 @@ RangeLimits range_limits(const SubScan& sub_scan, const ReturnOptions& options) 
   RangeLimits limits;
   limits.min_m = options.min_range_m > 0.0 ? options.min_range_m : sub_scan.min_range_m;
   limits.max_m = options.max_range_m > 0.0 ? options.max_range_m : sub_scan.max_range_m;
-  if (!(limits.max_m > 0.0)) limits.max_m = std::numeric_limits<double>::infinity();
+  if (!(limits.max_m > 0.0 && limits.max_m < kLongestRange_m)) limits.max_m = kLongestRange_m;
   return limits;
 }
 

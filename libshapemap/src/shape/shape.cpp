@@ -17,6 +17,16 @@ void resample(const LineSegment& segment, int sub_scan, double spacing_m, std::v
   }
 }
 
+/// Keeps every second, third, ... point, so that at most `max_points` are left: matching takes memory and time that
+/// grow with the square of their number.
+void thin_out(std::vector<ShapePoint>& points, std::size_t max_points) {
+  if (points.size() <= max_points) return;
+  const std::size_t step = (points.size() + max_points - 1) / max_points;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < points.size(); i += step) points[kept++] = points[i];
+  points.resize(kept);
+}
+
 }  // namespace
 
 SubScanShape sub_scan_shape(const SubScan& sub_scan, int sub_scan_index, const ReturnOptions& returns,
@@ -49,6 +59,7 @@ Shape shape_of(const Position& position, const ReturnOptions& returns, const Pol
     const auto part = sub_scan_shape(position.sub_scans[static_cast<std::size_t>(s)], s, returns, polylines, options);
     shape.points.insert(shape.points.end(), part.shape_points.begin(), part.shape_points.end());
   }
+  thin_out(shape.points, static_cast<std::size_t>(options.max_points));
   return shape;
 }
 

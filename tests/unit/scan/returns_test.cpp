@@ -112,7 +112,9 @@ TEST(Returns, LimitsOfTheLogAreOverriddenByOptions) {
 
 TEST(Returns, WhatIsNoDistanceIsNoReturn) {
   const RangeLimits no_limits = range_limits(SubScan{}, {});
-  EXPECT_TRUE(is_return(1e6F, no_limits));
+  EXPECT_TRUE(is_return(999.0F, no_limits));
+  EXPECT_FALSE(is_return(1000.0F, no_limits));  // no 2D laser measures a kilometre
+  EXPECT_FALSE(is_return(1e6F, range_limits(SubScan{}, {0.0, 1e9})));
   for (const float range_m : {0.0F, -1.0F, std::numeric_limits<float>::quiet_NaN(),
                               std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()}) {
     EXPECT_FALSE(is_return(range_m, no_limits)) << range_m;

@@ -41,6 +41,17 @@ TEST(Shape, TheNumberOfResampledPointsFollowsTheSpacing) {
   }
 }
 
+TEST(Shape, WithTooManyPointsIsThinnedOutEvenly) {
+  MappingOptions options = test::paper_options();
+  options.shape.spacing_m = 0.01;
+  options.shape.max_points = 100;
+  const Shape shape = test::shape_of(before_a_wall(2.0), options);  // 200 points without the limit
+  ASSERT_EQ(shape.size(), 100U);
+  for (std::size_t i = 1; i < shape.size(); ++i) {
+    EXPECT_NEAR((shape.points[i].p_m - shape.points[i - 1].p_m).norm(), 0.02, 0.002) << i;
+  }
+}
+
 TEST(Shape, AShortPieceGivesItsMiddle) {
   MappingOptions options = test::paper_options();
   options.shape.spacing_m = 1.0;

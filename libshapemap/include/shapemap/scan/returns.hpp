@@ -18,7 +18,8 @@ struct ReturnOptions {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit(Field{"min-range", "shorter readings are no returns [m]; 0: as the log says", 0, 1000}, self.min_range_m);
-    visit(Field{"max-range", "readings from here on are no returns [m]; 0: as the log says", 0, 1e6}, self.max_range_m);
+    visit(Field{"max-range", "readings from here on are no returns [m]; 0: as the log says", 0, 1000},
+          self.max_range_m);
     visit(Field{"max-mount-tilt-deg", "lasers mounted steeper than this see no floor plan [deg]", 0, 89, kDegree},
           self.max_mount_tilt_rad);
   }
@@ -31,10 +32,13 @@ struct Return {
   double range_m = 0.0;
 };
 
-/// The limits that hold for `sub_scan`: the options' where given, else the log's.
+/// No 2D laser measures this far: such readings are damage, and no returns whatever the limits say.
+inline constexpr double kLongestRange_m = 1000.0;
+
+/// The limits that hold for `sub_scan`: the options' where given, else the log's, else kLongestRange_m.
 struct RangeLimits {
   double min_m = 0.0;
-  double max_m = 0.0;  ///< infinity when nobody says
+  double max_m = 0.0;
 };
 RangeLimits range_limits(const SubScan& sub_scan, const ReturnOptions& options);
 
