@@ -17,9 +17,10 @@ void resample(const LineSegment& segment, int sub_scan, double spacing_m, std::v
   }
 }
 
-/// Keeps every second, third, ... point, so that at most `max_points` are left: matching takes memory and time that
-/// grow with the square of their number.
-void thin_out(std::vector<ShapePoint>& points, std::size_t max_points) {
+/// Keeps every second, third, ... point, so that at most `max_points` are left: fitting and matching take memory and
+/// time that grow with the square of their number.
+template <class Point>
+void thin_out(std::vector<Point>& points, std::size_t max_points) {
   if (points.size() <= max_points) return;
   const std::size_t step = (points.size() + max_points - 1) / max_points;
   std::size_t kept = 0;
@@ -32,7 +33,9 @@ void thin_out(std::vector<ShapePoint>& points, std::size_t max_points) {
 SubScanShape sub_scan_shape(const SubScan& sub_scan, int sub_scan_index, const ReturnOptions& returns,
                             const PolylineOptions& polylines, const ShapeOptions& options) {
   SubScanShape shape;
-  for (const Return& r : returns_in_robot(sub_scan, returns)) {
+  std::vector<Return> hits = returns_in_robot(sub_scan, returns);
+  thin_out(hits, static_cast<std::size_t>(options.max_points));
+  for (const Return& r : hits) {
     shape.scan_points.push_back({r.p_in_robot_m, r.range_m * std::abs(sub_scan.angle_step_rad)});
   }
   shape.polylines = fit_polylines(shape.scan_points, polylines);
