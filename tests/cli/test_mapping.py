@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The whole program on the demo arena, on MRPT's sample logs and on real logs, against bounds.
+
+Each bound leaves room for the last bits of another compiler, and is broken by a broken method; what was measured
+stands beside it.
+"""
+import os
+import pathlib
+
+import pytest
+from mapping_checks import (
+    check_map,
+    flaser_poses,
+    median_m,
+    num_within,
+    pair_errors,
+    poses_by_time,
+    read_report,
+    read_tum,
+    reported_poses,
+)
+
+SAMPLES = pathlib.Path("/usr/share/mrpt/datasets")
+WIDE = ("--rotation-range-deg", 20, "--rotation-step-deg", 2)
+
+
+@pytest.fixture
+def mapped(run, tmp_path):
+    """Maps a log into files of the given name: the run, its trajectory and its report."""
+
+    def map_log(log, name, *arguments):
+        outputs = ("--out", f"{name}.pgm", "--trajectory", f"{name}.tum", "--report", f"{name}.json")
+        result = run(log, *outputs, *arguments)
+        assert result.returncode in (0, 4), result.stderr
+        trajectory, report = read_tum(tmp_path / f"{name}.tum"), read_report(tmp_path / f"{name}.json")
+        placed = [position for position in report["positions"] if position["map_from_robot"] is not None]
+        assert len(placed) == report["num_placed"]
+        assert list(trajectory.timestamps) == pytest.approx([position["timestamp_s"] for position in placed], abs=1e-6)
+        return result, poses_by_time(trajectory), report
+
+    return map_log
+
+
+@pytest.fixture
+def arena(repository):
+    return repository / "datasets"
+
+
+@pytest.mark.parametrize("ending", ["nist", "rawlog"])
+def test_the_arena_is_mapped_right(mapped, arena, tmp_path, ending):
+    result, poses, report = mapped(arena / f"nist_arena.{ending}", "map")
+    assert result.returncode == 0 and report["num_placed"] == 16
+    errors = pair_errors(poses_by_time(read_tum(arena / "nist_arena.tum")), poses)
+    # Measured: 15 of 15 in both formats, also with noise of up to 1 mm on the ranges; the worst 0.056 m, 1.7 deg.
+    assert len(errors) == 15 and num_within(errors, 0.30, 5.0) >= 14, errors
+    assert median_m(errors) < 0.05, errors  # measured: 0.030 (rawlog), 0.031 (nist)
+    meta, image = check_map(tmp_path / "map.pgm", poses)
+    # The hall is 15.6 m x 9.6 m, and lasers see out of its doors.
+    assert min(image.shape) * meta["resolution"] > 8 and max(image.shape) * meta["resolution"] > 13
+
+
+# A rawlog keeps the laser's aperture as a 32 bit float: its beams turn by 4e-9 rad at most.
+ROUNDED_ANGLES = ("first_angle -50.0000002530119 ", "angle_step 0.25000000126505945 ")
+
+
+def test_both_formats_of_the_same_angles_give_the_same_map(mapped, arena, tmp_path):
+    text = (arena / "nist_arena.nist").read_text()
+    for exact, rounded in zip(("first_angle -50 ", "angle_step 0.25 "), ROUNDED_ANGLES):
+        assert exact in text
+        text = text.replace(exact, rounded)
+    (tmp_path / "rounded.nist").write_text(text)
+    _, from_nist, _ = mapped("rounded.nist", "a")
+    _, from_rawlog, _ = mapped(arena / "nist_arena.rawlog", "b")
+    assert from_nist.keys() == from_rawlog.keys()
+    for key, pose in from_nist.items():
+        assert from_rawlog[key] == pytest.approx(pose, abs=1e-3)  # measured: 2e-9
+
+
+def test_a_rounding_of_the_angles_moves_no_position_far(mapped, arena):
+    """Winners by a count of points (the rotation with the most overlap) may change with the last bits of the angles,
+    so the shipped files agree within the error of the method only, not to the millimetre."""
+    _, from_nist, _ = mapped(arena / "nist_arena.nist", "a")
+    _, from_rawlog, _ = mapped(arena / "nist_arena.rawlog", "b")
+    errors = pair_errors(from_nist, from_rawlog)
+    assert num_within(errors, 0.12, 2.5) == 15, errors  # measured: 0.052 m and 0.83 deg at most
+
+
+def test_a_truncated_arena_is_mapped_as_far_as_it_goes(mapped, arena, tmp_path):
+    whole = (arena / "nist_arena.rawlog").read_bytes()
+    (tmp_path / "cut.rawlog").write_bytes(whole[: len(whole) * 2 // 3])
+    result, poses, report = mapped("cut.rawlog", "map")
+    assert "warning: cut.rawlog: damaged or cut off" in result.stderr
+    assert any("cut off" in warning for warning in report["warnings"])
+    assert 8 <= report["num_positions"] <= 12  # measured: 10 or 11
+    truth = poses_by_time(read_tum(arena / "nist_arena.tum"))
+    errors = pair_errors({key: truth[key] for key in sorted(truth)[: report["num_positions"]]}, poses)
+    assert num_within(errors, 0.30, 5.0) >= len(errors) - 1, errors
+    check_map(tmp_path / "map.pgm", poses)
+
+
+# The log, a dense selection of it, and its number of positions. Measured: all are placed.
+SAMPLE_RUNS = {
+    "sena": ("2006-01ENE-21-SENA_Telecom Faculty_one_loop_only.rawlog", ("--every", 5, "--first", 20), 20),
+    "localization": ("localization_demo.rawlog", ("--every", 3), 13),
+    "uwb": ("uwb_ro-localization_demo.rawlog", ("--every", 5, "--first", 14), 14),
+}
+
+
+def sample_log(name):
+    path = SAMPLES / SAMPLE_RUNS[name][0]
+    if not path.exists():
+        pytest.fail(f"{path} is missing; scripts/install_deps.sh installs it with mrpt-common")
+    return path
+
+
+def check_listing(result, poses, report):
+    """Every position is either in the map or listed."""
+    map_fragments = {i for i, fragment in enumerate(report["fragments"]) if fragment["is_map"]}
+    assert len(map_fragments) == 1
+    for position in report["positions"]:
+        placed = position["map_from_robot"] is not None
+        assert placed == (position["timestamp_s"] in poses) == (position["fragment"] in map_fragments)
+        listed = f"position {position['index_in_whole_log']} not placed: " in result.stderr
+        assert listed == (not placed)
+    assert result.returncode == (0 if report["num_placed"] == report["num_positions"] else 4)
+
+
+@pytest.mark.parametrize("name", SAMPLE_RUNS)
+def test_a_sample_log_of_mrpt_is_mapped(mapped, tmp_path, name):
+    _, selection, num_positions = SAMPLE_RUNS[name]
+    result, poses, report = mapped(sample_log(name), "map", *selection, *WIDE, "--verbose")
+    assert report["num_positions"] == len(report["positions"]) == num_positions
+    assert report["num_placed"] >= num_positions - 1
+    check_listing(result, poses, report)
+    check_map(tmp_path / "map.pgm", poses)
+
+
+SPARSE = ("--every", 20, *WIDE)  # of uwb: 18 positions, too far apart. Measured: 8 placed, 4 fragments
+
+
+def test_positions_too_far_apart_are_listed(mapped):
+    result, poses, report = mapped(sample_log("uwb"), "map", *SPARSE, "--verbose")
+    assert result.returncode == 4 and report["num_positions"] == 18
+    assert 4 <= len(poses) <= 14 and len(report["fragments"]) >= 2
+    check_listing(result, poses, report)
+
+
+@pytest.mark.xfail(strict=True, reason="a position aligned within a fragment that is not the map has an empty reason")
+def test_the_report_gives_a_reason_for_each_position_without_a_place(mapped):
+    _, _, report = mapped(sample_log("uwb"), "map", *SPARSE)
+    unplaced = [position for position in report["positions"] if position["map_from_robot"] is None]
+    assert unplaced and all(position["reason"] for position in unplaced)
+
+
+# Right pairs of 59. Measured: intel 52, orebro 45, belgioioso 59.
+@pytest.mark.parametrize(("name", "min_right"), [("intel", 47), ("orebro", 40), ("belgioioso", 55)])
+def test_a_real_log_is_mapped_right(mapped, tmp_path, name, min_right):
+    file_name = f"carmen/{name}-corrected.log.gz"
+    folder = os.environ.get("SHAPEMAP_DATASETS")
+    if not folder:
+        pytest.skip(f"SHAPEMAP_DATASETS is not set, so the real log {file_name} is not tested")
+    log = pathlib.Path(folder) / file_name
+    assert log.exists(), f"{file_name} is not in SHAPEMAP_DATASETS"
+    grid = ("--rotation-range-deg", 90, "--rotation-step-deg", 2)
+    _, _, report = mapped(log, "map", "--first", 60, *grid)
+    poses = reported_poses(report)
+    errors = pair_errors(flaser_poses(log, 60), poses)
+    assert len(errors) == 59 and num_within(errors, 0.20, 5.0) >= min_right, errors
+    check_map(tmp_path / "map.pgm", poses)
