@@ -16,21 +16,12 @@ namespace shapemap::cli {
 namespace {
 
 std::vector<std::string> unplaced_lines(const MapResult& result, const SelectionOptions& selection) {
-  std::vector<bool> is_placed;
-  for (const PlacedPosition& place : result.placed()) {
-    is_placed.resize(std::max(is_placed.size(), place.position_index + 1));
-    is_placed[place.position_index] = true;
-  }
   std::vector<std::string> lines;
   for (const PositionResult& position : result.positions) {
-    const std::size_t index = position.position_index;
-    if (index < is_placed.size() && is_placed[index]) continue;
-    std::string why = position.reason;
-    if (position.fragment >= 0) {
-      why += (why.empty() ? "" : "; ") + ("in fragment " + std::to_string(position.fragment)) +
-             ", which nothing ties to the map";
-    }
-    lines.push_back("position " + std::to_string(index_in_whole_log(index, selection)) + " not placed: " + why);
+    const std::string why = result.why_not_in_map(position);
+    if (why.empty()) continue;
+    const std::size_t index = index_in_whole_log(position.position_index, selection);
+    lines.push_back("position " + std::to_string(index) + " not placed: " + why);
   }
   return lines;
 }

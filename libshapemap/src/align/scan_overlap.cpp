@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/align/scan_overlap.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace shapemap {
@@ -16,13 +17,17 @@ std::optional<Partner> nearest_partner(const PartialMap& target, const Point2& p
 
 std::optional<Partner> nearest_similar_partner(const PartialMap& target, const Point2& p_m, double tangent_rad,
                                                double max_distance_m, double tolerance_rad) {
-  std::optional<Partner> best;
-  for (const std::size_t t : target.index().within(p_m, max_distance_m)) {
-    if (angle_between(target.point(t).tangent_rad, tangent_rad) > tolerance_rad) continue;
-    const double distance_m = (target.point(t).p_m - p_m).norm();
-    if (!best || distance_m < best->distance_m) best = Partner{0, t, distance_m};
+  // Most partners are near: a few small circles hold far fewer points than the largest one.
+  constexpr double kFirstShare = 1.0 / 16.0;
+  for (double radius_m = kFirstShare * max_distance_m;; radius_m = std::min(2.0 * radius_m, max_distance_m)) {
+    std::optional<Partner> best;
+    for (const std::size_t t : target.index().within(p_m, radius_m)) {
+      if (angle_between(target.point(t).tangent_rad, tangent_rad) > tolerance_rad) continue;
+      const double distance_m = (target.point(t).p_m - p_m).norm();
+      if (!best || distance_m < best->distance_m) best = Partner{0, t, distance_m};
+    }
+    if (best || !(radius_m < max_distance_m)) return best;
   }
-  return best;
 }
 
 }  // namespace

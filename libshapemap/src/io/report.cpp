@@ -103,6 +103,7 @@ Json position_json(const PositionResult& position, const RunReport& report) {
           {"starts_fragment", position.starts_fragment},
           {"reason", position.reason},
           {"alignment", alignment_json(position)},
+          {"why_not_in_map", report.result.why_not_in_map(position)},
           {"map_from_robot", nullptr}};
 }
 

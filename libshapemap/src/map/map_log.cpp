@@ -103,6 +103,13 @@ const std::vector<PlacedPosition>& MapResult::placed() const {
   return largest_fragment < 0 ? none : fragments[static_cast<std::size_t>(largest_fragment)].positions;
 }
 
+std::string MapResult::why_not_in_map(const PositionResult& position) const {
+  if (position.fragment < 0) return position.reason;
+  if (position.fragment == largest_fragment) return "";
+  return position.reason + (position.reason.empty() ? "" : "; ") + "in fragment " + std::to_string(position.fragment) +
+         ", which nothing ties to the map";
+}
+
 MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer) {
   validate_all(options);
   MapResult result;

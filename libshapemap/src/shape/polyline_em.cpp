@@ -124,9 +124,11 @@ PolylineFit fit_polylines(const std::vector<ScanPoint>& points, const PolylineOp
     if (same_supports(segments, before)) break;
     before = segments;
   }
-  std::stable_sort(segments.begin(), segments.end(), [](const WorkingSegment& a, const WorkingSegment& b) {
-    return !a.support.empty() && !b.support.empty() && a.support.front() < b.support.front();
-  });
+  if (fit.iterations > 0) {  // before the first, they are in scan order and own no points yet
+    std::stable_sort(segments.begin(), segments.end(), [](const WorkingSegment& a, const WorkingSegment& b) {
+      return a.support.front() < b.support.front();
+    });
+  }
   for (const WorkingSegment& segment : segments) fit.segments.push_back(segment.line);
   fit.closest_segment = closest_segments(points, fit.segments);
   return fit;

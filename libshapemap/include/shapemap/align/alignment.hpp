@@ -35,15 +35,15 @@ struct EnumNames<AlignStatus> {
 /// of the reference.
 struct Alignment {
   AlignStatus status = AlignStatus::kNoShape;
-  std::string reason;              ///< one line with the numbers behind `status`; empty when ok
-  Pose2 ref_from_query = kNoPose;  ///< NaN unless ok()
-  Pose2 shape_ref_from_query;      ///< the same before ICP, from shape alone
-  Pose2 icp_ref_from_query;        ///< the same after ICP and before decoupled ICP
-  double rotation_rad = 0.0;       ///< the rotation of the grid that won
-  int num_correspondences = 0;     ///< that the winning translation keeps
-  double mean_distance_m = 0.0;    ///< among them, in the segment that gave the translation
-  int overlap = 0;                 ///< scan overlap after the last step: query points with a partner
-  double overlap_ratio = 0.0;      ///< the same as a share of the query's points
+  std::string reason;                    ///< one line with the numbers behind `status`; empty when ok
+  Pose2 ref_from_query = kNoPose;        ///< NaN unless ok()
+  Pose2 shape_ref_from_query = kNoPose;  ///< the same before ICP, from shape alone
+  Pose2 icp_ref_from_query = kNoPose;    ///< the same after ICP and before decoupled ICP
+  double rotation_rad = 0.0;             ///< the rotation of the grid that won
+  int num_correspondences = 0;           ///< that the winning translation keeps
+  double mean_distance_m = 0.0;          ///< among them, in the segment that gave the translation
+  int overlap = 0;                       ///< scan overlap after the last step: query points with a partner
+  double overlap_ratio = 0.0;            ///< the same as a share of the query's points
   int icp_iterations = 0;
   std::vector<Pose2> query_from_sub_scan;  ///< corrections by decoupled ICP, one per sub-scan; identity without
 

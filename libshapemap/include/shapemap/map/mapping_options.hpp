@@ -27,7 +27,7 @@ struct ChainOptions {
     visit(Field{"method", "how scans are aligned"}, self.method);
     visit(Field{"target-scans", "previous scans that make the target of an alignment", 1, 100}, self.target_scans);
     visit(Field{"threads", "worker threads; the result does not depend on it", 1, 256}, self.threads);
-    visit(Field{"seed", "seed of everything random", 0, 2147483647}, self.seed);
+    visit(Field{"seed", "seed of everything random; the paper's method draws nothing", 0, 2147483647}, self.seed);
   }
 };
 

@@ -52,6 +52,9 @@ struct MapResult {
 
   /// Positions of the largest fragment; empty when there is none.
   const std::vector<PlacedPosition>& placed() const;
+
+  /// One line that says why a position is not in the map; empty for one that is.
+  std::string why_not_in_map(const PositionResult& position) const;
 };
 
 }  // namespace shapemap

@@ -30,7 +30,7 @@ struct HistogramOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit(Field{"histogram-radius-m", "scan points this close to a point are in its histogram [m]", 0.05, 10},
+    visit(Field{"histogram-radius-m", "shape points this close to a point are in its histogram [m]", 0.05, 10},
           self.radius_m);
     visit(Field{"histogram-norm", "what the bins are divided by"}, self.norm);
   }

@@ -24,7 +24,7 @@ class PointIndex {
   PointIndex& operator=(PointIndex&&) noexcept;
 
   std::size_t size() const;
-  /// The nearest point closer than `max_distance_m`; an infinite distance when there is none.
+  /// The nearest point at most `max_distance_m` away; an infinite distance when there is none.
   Neighbour nearest(const Point2& p, double max_distance_m = std::numeric_limits<double>::infinity()) const;
   /// All points within `radius_m`, by ascending index.
   std::vector<std::size_t> within(const Point2& p, double radius_m) const;
