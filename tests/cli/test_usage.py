@@ -102,12 +102,13 @@ def test_options_file_round_trips_after_every_change(run, tmp_path):
     assert values["range-unit"] == "cm"
 
 
-@pytest.mark.parametrize("option", ["--fov-deg", "--max-mount-tilt-deg", "--sub-scan-turn-deg"])
-def test_any_angle_in_degrees_comes_back_as_it_was_typed(run, tmp_path, option):
+def test_any_angle_in_degrees_comes_back_as_it_was_typed(run):
+    options = ("--fov-deg", "--max-mount-tilt-deg", "--sub-scan-turn-deg")
     for i in range(12):
         typed = f"{0.1 + i * 7.3:.6g}"
-        text = run(option, typed, "--dump-config").stdout
-        assert f"\n{option[2:]} = {typed}\n" in text
+        text = run(*(word for option in options for word in (option, typed)), "--dump-config").stdout
+        for option in options:
+            assert f"\n{option[2:]} = {typed}\n" in text
 
 
 def test_strict_paper_first_then_file_then_flags(run, tmp_path):
