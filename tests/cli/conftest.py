@@ -7,7 +7,7 @@ import sys
 import pytest
 
 sys.path.insert(0, os.path.dirname(__file__))
-import synthetic_log  # noqa: E402
+import synthetic_log
 
 
 @pytest.fixture(scope="session")

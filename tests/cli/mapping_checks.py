@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads what a run has written, and compares it with reference poses."""
 import gzip
+import itertools
 import json
 import math
 import statistics
@@ -50,7 +51,7 @@ def reported_poses(report):
 def pair_errors(truth, found):
     """Metres and degrees for each consecutive pair of the truth; infinite where one of the two is not placed."""
     keys, errors = sorted(truth), []
-    for a, b in zip(keys, keys[1:]):
+    for a, b in itertools.pairwise(keys):
         if a not in found or b not in found:
             errors.append((math.inf, math.inf))
             continue
@@ -74,7 +75,8 @@ def read_report(path):
 
 def read_pgm(path):
     magic, size, depth, pixels = path.read_bytes().split(b"\n", 3)
-    assert magic == b"P5" and depth == b"255"
+    assert magic == b"P5"
+    assert depth == b"255"
     width, height = map(int, size.split())
     return np.frombuffer(pixels, np.uint8).reshape(height, width)
 
@@ -83,7 +85,9 @@ def check_map(image_path, poses):
     """map.yaml describes this image, which has walls and free space, and all poses lie in it, outside of walls."""
     image = read_pgm(image_path)
     meta = yaml.safe_load(image_path.with_suffix(".yaml").read_text())
-    assert meta["image"] == image_path.name and meta["mode"] == "trinary" and meta["negate"] == 0
+    assert meta["image"] == image_path.name
+    assert meta["mode"] == "trinary"
+    assert meta["negate"] == 0
     resolution_m = meta["resolution"]
     occupancy = (255 - image.astype(float)) / 255
     num_occupied = np.count_nonzero(occupancy > meta["occupied_thresh"])
@@ -95,7 +99,8 @@ def check_map(image_path, poses):
     for x, y, _ in poses.values():
         column = int((x - meta["origin"][0]) / resolution_m)
         row = height - 1 - int((y - meta["origin"][1]) / resolution_m)
-        assert 0 <= column < width and 0 <= row < height
+        assert 0 <= column < width
+        assert 0 <= row < height
         states.append(occupancy[row, column])
     # A laser in front of the robot that looks ahead leaves the place of the robot itself unknown.
     assert max(states) < meta["occupied_thresh"], "no robot stands in a wall"

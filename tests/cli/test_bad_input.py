@@ -38,7 +38,8 @@ def test_a_truncated_rawlog_is_used_as_far_as_it_goes(run, room_log, tmp_path):
     result = run("cut.rawlog", "--out", "map.png", "--trajectory", "-")
     assert result.returncode == 0, result.stderr
     assert 6 <= len(result.stdout.splitlines()) < 12
-    assert "warning: " in result.stderr and "cut.rawlog" in result.stderr
+    assert "warning: " in result.stderr
+    assert "cut.rawlog" in result.stderr
 
 
 def test_a_truncated_gz_is_used_as_far_as_it_goes_and_says_so(run, room_text, tmp_path):
@@ -47,7 +48,8 @@ def test_a_truncated_gz_is_used_as_far_as_it_goes_and_says_so(run, room_text, tm
     result = run("cut.log.gz", "--out", "map.png", "--trajectory", "-")
     assert result.returncode == 0, result.stderr
     assert 2 <= len(result.stdout.splitlines()) < 12
-    assert "warning: " in result.stderr and "cut.log.gz" in result.stderr
+    assert "warning: " in result.stderr
+    assert "cut.log.gz" in result.stderr
 
 
 def test_a_gz_without_content(fails, tmp_path):
@@ -100,7 +102,9 @@ def test_two_identical_scans_lie_on_each_other(run, tmp_path):
     result = run("two.log", "--out", "map.png", "--trajectory", "-")
     assert result.returncode == 0, result.stderr
     second = [float(v) for v in result.stdout.splitlines()[1].split()]
-    assert abs(second[1]) < 1e-3 and abs(second[2]) < 1e-3 and abs(second[6]) < 1e-4
+    assert abs(second[1]) < 1e-3
+    assert abs(second[2]) < 1e-3
+    assert abs(second[6]) < 1e-4
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")

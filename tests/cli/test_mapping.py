@@ -64,14 +64,16 @@ def mapped_arena(cli_path, repository, tmp_path_factory):
 @pytest.mark.parametrize("ending", ["nist", "rawlog"])
 def test_the_arena_is_mapped_right(mapped_arena, arena, ending):
     folder, result, poses, report = mapped_arena(ending)
-    assert result.returncode == 0 and report["num_placed"] == 16
+    assert result.returncode == 0
+    assert report["num_placed"] == 16
     errors = pair_errors(poses_by_time(read_tum(arena / "nist_arena.tum")), poses)
     # Measured: 15 of 15 in both formats, also with noise of up to 1 mm on the ranges; the worst 0.056 m, 1.7 deg.
     assert len(errors) == 15 and num_within(errors, 0.30, 5.0) >= 14, errors
     assert median_m(errors) < 0.05, errors  # measured: 0.031; without ICP 0.075, with shapes ignored 0.059
     meta, image = check_map(folder / "map.pgm", poses)
     # The hall is 15.6 m x 9.6 m, and lasers see out of its doors.
-    assert min(image.shape) * meta["resolution"] > 8 and max(image.shape) * meta["resolution"] > 13
+    assert min(image.shape) * meta["resolution"] > 8
+    assert max(image.shape) * meta["resolution"] > 13
 
 
 # A rawlog keeps the laser's aperture as a 32 bit float: its beams turn by 4e-9 rad at most.
@@ -155,15 +157,18 @@ SPARSE = ("--every", 20, *WIDE)  # of uwb: 18 positions, too far apart. Measured
 
 def test_positions_too_far_apart_are_listed(mapped):
     result, poses, report = mapped(sample_log("uwb"), *SPARSE, "--verbose")
-    assert result.returncode == 4 and report["num_positions"] == 18
-    assert 4 <= len(poses) <= 14 and len(report["fragments"]) >= 2
+    assert result.returncode == 4
+    assert report["num_positions"] == 18
+    assert 4 <= len(poses) <= 14
+    assert len(report["fragments"]) >= 2
     check_listing(result, poses, report)
 
 
 def test_the_report_gives_a_reason_for_each_position_without_a_place(mapped):
     _, _, report = mapped(sample_log("uwb"), *SPARSE)
     unplaced = [position for position in report["positions"] if position["map_from_robot"] is None]
-    assert unplaced and all(position["why_not_in_map"] for position in unplaced)
+    assert unplaced
+    assert all(position["why_not_in_map"] for position in unplaced)
 
 
 # Right pairs of 59. Measured: intel 52, orebro 45, belgioioso 59; without ICP 36, 39, 53.

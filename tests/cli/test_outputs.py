@@ -34,7 +34,8 @@ def test_a_run_maps_the_room_and_writes_all_that_is_asked_for(run, room_log, tmp
     )
     assert result.returncode == 0, result.stderr
     assert result.stdout == ""
-    assert "placed 12 of 12 positions (1 fragment)" in result.stderr and "map.png" in result.stderr
+    assert "placed 12 of 12 positions (1 fragment)" in result.stderr
+    assert "map.png" in result.stderr
     poses = read_tum((tmp_path / "map.tum").read_text())
     truth = synthetic_log.path(12)
     assert list(poses) == [1.0 + i for i in range(12)]
@@ -43,10 +44,12 @@ def test_a_run_maps_the_room_and_writes_all_that_is_asked_for(run, room_log, tmp
         assert math.hypot(expected[0] - found[0], expected[1] - found[1]) < 0.1
         assert abs(expected[2] - found[2]) < math.radians(2)
     report = json.loads((tmp_path / "report.json").read_text())
-    assert report["num_placed"] == 12 and len(report["positions"]) == 12
+    assert report["num_placed"] == 12
+    assert len(report["positions"]) == 12
     for i, (x, y, theta) in enumerate(carmen_poses((tmp_path / "out.log").read_text())):
         pose = report["positions"][i]["map_from_robot"]
-        assert abs(x - pose["x_m"]) < 1e-5 and abs(y - pose["y_m"]) < 1e-5
+        assert abs(x - pose["x_m"]) < 1e-5
+        assert abs(y - pose["y_m"]) < 1e-5
         assert abs(math.degrees(theta) - pose["theta_deg"]) < 1e-3
     assert "image: \"map.png\"" in (tmp_path / "map.yaml").read_text()
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
@@ -69,7 +72,8 @@ def test_unplaced_positions_are_listed_and_left_out(run, tmp_path):
     assert result.returncode == 4, result.stderr
     listed = [line for line in result.stderr.splitlines() if "not placed" in line]
     report = json.loads((tmp_path / "r.json").read_text())
-    assert report["num_placed"] == 5 and report["num_positions"] == 33
+    assert report["num_placed"] == 5
+    assert report["num_positions"] == 33
     assert len(listed) == 20
     assert "... and 8 more, see --report" in result.stderr
     assert len(result.stdout.splitlines()) == 5
@@ -90,10 +94,13 @@ def test_selection_keeps_count_in_the_whole_log(run, room_log, tmp_path):
 
 def test_a_pipe_gets_no_progress_bar_and_quiet_means_silence(run, room_log):
     result = run("room.log", "--out", "a.png")
-    assert "\r" not in result.stderr and "\033" not in result.stderr
+    assert "\r" not in result.stderr
+    assert "\033" not in result.stderr
     assert len(result.stderr.splitlines()) == 1
     result = run("room.log", "--out", "b.png", "--quiet")
-    assert result.returncode == 0 and result.stderr == "" and result.stdout == ""
+    assert result.returncode == 0
+    assert result.stderr == ""
+    assert result.stdout == ""
 
 
 def test_a_terminal_gets_a_progress_bar(cli_path, room_log, tmp_path):
@@ -111,7 +118,9 @@ def test_a_terminal_gets_a_progress_bar(cli_path, room_log, tmp_path):
         seen += chunk
     os.close(main)
     assert process.wait(60) == 0
-    assert b"12/12" in seen and b"positions/s" in seen and b"ETA" in seen
+    assert b"12/12" in seen
+    assert b"positions/s" in seen
+    assert b"ETA" in seen
 
 
 def test_existing_outputs_stay_without_force(fails, run, room_log, tmp_path):

@@ -13,8 +13,10 @@ def options_of(text):
 @pytest.mark.parametrize("command", [[], ["info"], ["convert"]])
 def test_help_has_groups_examples_and_exit_codes(run, command):
     result = run(*command, "--help")
-    assert result.returncode == 0 and result.stderr == ""
-    assert "Examples:" in result.stdout and "Exit codes:" in result.stdout
+    assert result.returncode == 0
+    assert result.stderr == ""
+    assert "Examples:" in result.stdout
+    assert "Exit codes:" in result.stdout
     assert "--sensor-label" in result.stdout
 
 
@@ -79,7 +81,8 @@ def test_messages_name_option_value_and_range(fails, room_log):
 
 def test_options_file_round_trips(run, tmp_path):
     first = run("--dump-config")
-    assert first.returncode == 0 and first.stderr == ""
+    assert first.returncode == 0
+    assert first.stderr == ""
     (tmp_path / "a.toml").write_text(first.stdout)
     assert run("--config", "a.toml", "--dump-config").stdout == first.stdout
 
@@ -131,7 +134,7 @@ def test_a_switch_can_be_turned_off_again(run, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text, says",
+    ("text", "says"),
     [
         ("\nno-such-key = 1\n", ["bad.toml:2", "no-such-key"]),
         ("x\n", ["bad.toml:1"]),
