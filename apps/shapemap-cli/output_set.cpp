@@ -30,11 +30,13 @@ bool is_stream(const std::string& path) {
 
 void write_stream(const std::string& path, const std::string& content) {
   std::FILE* stream = path == "-" ? stdout : std::fopen(path.c_str(), "wb");
+  if (!stream && interrupted()) throw Interrupted();
   if (!stream) throw OutputError("cannot write '" + path + "': " + std::strerror(errno));
   const bool written = std::fwrite(content.data(), 1, content.size(), stream) == content.size();
   const bool flushed = std::fflush(stream) == 0;
   const int error = errno;
   if (stream != stdout) std::fclose(stream);
+  if (interrupted()) throw Interrupted();
   if (!written || !flushed) throw OutputError("cannot write '" + path + "': " + std::strerror(error));
 }
 

@@ -34,8 +34,9 @@ void handle(int signal, void (*handler)(int), int flags) {
 }  // namespace
 
 void install_signal_handlers() {
-  // SA_RESETHAND: the second signal meets the system's own handler, which kills.
-  for (const int signal : {SIGINT, SIGTERM}) handle(signal, on_interrupt, SA_RESTART | static_cast<int>(SA_RESETHAND));
+  // SA_RESETHAND: the second signal meets the system's own handler, which kills. No SA_RESTART: waiting for the reader
+  // of a pipe ends.
+  for (const int signal : {SIGINT, SIGTERM}) handle(signal, on_interrupt, static_cast<int>(SA_RESETHAND));
   for (const int signal : {SIGPIPE, SIGXFSZ}) handle(signal, SIG_IGN, 0);
 }
 
