@@ -124,11 +124,11 @@ TEST(GridMap, IsCroppedToWhatWasSeenOnWholeCells) {
 }
 
 TEST(GridMap, RefusesWhatWouldNotFitAndSaysWhatHelps) {
-  SubScan far = three_beams(1e8F, 1e8F, 1e8F);
+  SubScan far = three_beams(900.0F, 900.0F, 900.0F);
   far.max_range_m = 0.0;
   try {
-    map_of(log_of(far), {});
-    FAIL() << "a map of 1e18 cells was built";
+    map_of(log_of(far), {}, 0.01);
+    FAIL() << "a map of 1e10 cells was built";
   } catch (const OutputError& e) {
     EXPECT_THAT(e.what(), HasSubstr("--resolution-m"));
   }
