@@ -17,6 +17,8 @@ Eigen::Matrix3d rotation_of(const MountPose& mount) {
 
 }  // namespace
 
+bool is_upside_down(const MountPose& robot_from_sensor) { return rotation_of(robot_from_sensor)(2, 2) < 0.0; }
+
 RangeLimits range_limits(const SubScan& sub_scan, const ReturnOptions& options) {
   RangeLimits limits;
   limits.min_m = options.min_range_m > 0.0 ? options.min_range_m : sub_scan.min_range_m;

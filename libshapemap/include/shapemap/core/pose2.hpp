@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 #include "shapemap/core/angles.hpp"
 
@@ -19,11 +20,18 @@ struct Pose2 {
   Point2 translation() const { return {x_m, y_m}; }
 };
 
-inline Point2 rotate(const Point2& p, double angle_rad) {
-  const double c = std::cos(angle_rad);
-  const double s = std::sin(angle_rad);
-  return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
-}
+/// A rotation whose sine and cosine are kept, to turn many points.
+class Turn {
+ public:
+  explicit Turn(double angle_rad) : cos_(std::cos(angle_rad)), sin_(std::sin(angle_rad)) {}
+  Point2 operator*(const Point2& p) const { return {cos_ * p.x() - sin_ * p.y(), sin_ * p.x() + cos_ * p.y()}; }
+
+ private:
+  double cos_;
+  double sin_;
+};
+
+inline Point2 rotate(const Point2& p, double angle_rad) { return Turn(angle_rad) * p; }
 
 inline Point2 operator*(const Pose2& b_from_a, const Point2& p_in_a) {
   return rotate(p_in_a, b_from_a.theta_rad) + b_from_a.translation();

@@ -50,6 +50,9 @@ bool is_return(float range_m, const RangeLimits& limits);
 /// Empty for a sensor that is tilted more than `options.max_mount_tilt_rad`.
 std::vector<Return> returns_in_robot(const SubScan& sub_scan, const ReturnOptions& options);
 
+/// Whether the sensor's own z axis points to the floor, so that its counterclockwise is clockwise from above.
+bool is_upside_down(const MountPose& robot_from_sensor);
+
 /// Where the sensor stands in the robot's frame, with the sub-scan's nominal heading applied.
 Pose2 robot_from_sensor2(const SubScan& sub_scan);
 

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "shapemap/core/pose2.hpp"
+#include "shapemap/scan/scan.hpp"
+#include "shapemap/shape/shape.hpp"
+
+namespace shapemap {
+
+/// What one sub-scan saw, by bearing: which surface ended each beam, and so which space was free. Places are in the
+/// robot's frame, bearings in the sensor's, counterclockwise as seen from above.
+struct RangeImage {
+  struct Beam {
+    double range_m = 0.0;  ///< 0: no return
+    Point2 hit_m{0.0, 0.0};
+    Point2 normal{0.0, 0.0};   ///< of the surface there, towards the sensor
+    double footprint_m = 0.0;  ///< half of the length of surface between this beam and the next
+  };
+
+  Pose2 sensor_from_robot;
+  double first_bearing_rad = 0.0;
+  double step_rad = 0.0;  ///< positive
+  std::vector<Beam> beams;
+
+  /// Index of the beam nearest to a bearing; -1: out of the field of view.
+  int beam_at(double bearing_rad) const;
+};
+
+/// The image of a sub-scan whose points and polylines are `shape`.
+RangeImage range_image(const SubScan& sub_scan, const SubScanShape& shape);
+
+}  // namespace shapemap

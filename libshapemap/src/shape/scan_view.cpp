@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/shape/scan_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shapemap {
+namespace {
+
+constexpr std::size_t kSmoothingBins = 3;
+
+std::size_t tangent_bin(double tangent_rad) {
+  const double turns = tangent_rad / (2.0 * kPi);
+  const auto bin = static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(kTangentBins));
+  return std::min(bin, kTangentBins - 1);
+}
+
+/// Each point counts in its own bin and, less and less, in those beside it.
+TangentHistogram tangent_histogram(const std::vector<ShapePoint>& points) {
+  TangentHistogram histogram{};
+  for (const ShapePoint& point : points) {
+    const std::size_t lowest = tangent_bin(point.tangent_rad) + kTangentBins - kSmoothingBins;
+    for (std::size_t k = 0; k <= 2 * kSmoothingBins; ++k) {
+      const std::size_t away = k < kSmoothingBins ? kSmoothingBins - k : k - kSmoothingBins;
+      histogram[(lowest + k) % kTangentBins] += 1.0 - static_cast<double>(away) / (kSmoothingBins + 1.0);
+    }
+  }
+  return histogram;
+}
+
+/// The direction that the surfaces run along, all in all; either way.
+Point2 main_direction(const std::vector<Point2>& directions) {
+  double cos2 = 0.0;
+  double sin2 = 0.0;
+  for (const Point2& d : directions) {
+    cos2 += d.x() * d.x() - d.y() * d.y();
+    sin2 += 2.0 * d.x() * d.y();
+  }
+  const double angle_rad = 0.5 * std::atan2(sin2, cos2);
+  return {std::cos(angle_rad), std::sin(angle_rad)};
+}
+
+void add_weights(ScanView& view) {
+  const Point2 along = main_direction(view.directions);
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    const double alike = view.tangents[tangent_bin(view.points[i].tangent_rad)];
+    view.weights.push_back(1.0 / std::sqrt(std::max(1.0, alike)));
+    const Point2& d = view.directions[i];
+    const double across = along.x() * d.y() - along.y() * d.x();
+    view.cross_weights.push_back(across * across);
+  }
+}
+
+double reach_m(const std::vector<RangeImage>& images) {
+  std::vector<double> ranges_m;
+  for (const RangeImage& image : images) {
+    for (const RangeImage::Beam& beam : image.beams) {
+      if (beam.range_m > 0.0) ranges_m.push_back(beam.range_m);
+    }
+  }
+  if (ranges_m.empty()) return 0.0;
+  const auto ninth = ranges_m.begin() + static_cast<std::ptrdiff_t>(ranges_m.size() * 9 / 10);
+  std::nth_element(ranges_m.begin(), ninth, ranges_m.end());
+  return *ninth;
+}
+
+}  // namespace
+
+ScanView view_of(const Position& position, const ReturnOptions& returns, const PolylineOptions& polylines,
+                 const ShapeOptions& shape, const ViewOptions& options) {
+  ScanView view;
+  std::vector<ShapePoint> all;
+  for (std::size_t s = 0; s < position.sub_scans.size(); ++s) {
+    const SubScanShape part = sub_scan_shape(position.sub_scans[s], static_cast<int>(s), returns, polylines, shape);
+    all.insert(all.end(), part.shape_points.begin(), part.shape_points.end());
+    view.images.push_back(range_image(position.sub_scans[s], part));
+  }
+  view.tangents = tangent_histogram(all);
+  view.reach_m = reach_m(view.images);
+
+  const auto max_points = static_cast<std::size_t>(options.max_points);
+  const std::size_t step = std::max<std::size_t>(1, (all.size() + max_points - 1) / max_points);
+  std::vector<Point2> places_m;
+  for (std::size_t i = step / 2; i < all.size(); i += step) {
+    view.points.push_back(all[i]);
+    view.directions.emplace_back(std::cos(all[i].tangent_rad), std::sin(all[i].tangent_rad));
+    places_m.push_back(all[i].p_m);
+  }
+  add_weights(view);
+  view.index = PointIndex(std::move(places_m));
+  return view;
+}
+
+}  // namespace shapemap
