@@ -47,9 +47,11 @@ RotationMatch match_at_rotation(const MatchTarget& target, const Shape& query, c
     const Pose2 target_from_query{translation.target_from_query_m.x(), translation.target_from_query_m.y(),
                                   rotation_rad};
     const double limit_m = translation.mean_distance_m + options.overlap.slack_m;
+    const bool is_first = match.translation.num_correspondences == 0;
+    const std::size_t to_win = is_first ? 0 : static_cast<std::size_t>(match.overlap.num_points) + 1;
     const ScanOverlap overlap =
-        scan_overlap(partners_within(target.map, query, target_from_query, limit_m, options.overlap));
-    if (match.translation.num_correspondences > 0 && overlap.num_points <= match.overlap.num_points) continue;
+        scan_overlap(partners_within(target.map, query, target_from_query, limit_m, options.overlap, to_win));
+    if (static_cast<std::size_t>(overlap.num_points) < to_win) continue;
     match.segments = std::move(segments);
     match.translation = translation;
     match.overlap = overlap;
