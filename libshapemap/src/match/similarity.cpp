@@ -64,38 +64,39 @@ using BlockWords = std::array<Word, kBlock>;
 
 /// Bins by their numbers.
 struct BinList {
-  std::array<std::uint8_t, kHistogramBins + 1> bins{};  ///< one more, for what is not appended
+  std::array<std::uint8_t, kHistogramBins> bins{};
   std::size_t size = 0;
-
-  /// Appends without a branch, since none could be foreseen.
-  void add_if(bool wanted, std::size_t bin) {
-    bins[size] = static_cast<std::uint8_t>(bin);
-    size += wanted ? 1 : 0;
-  }
 };
 
-BinList bins_of(Word mask) {
+/// The bins for which `wanted` is true, without a branch, since none could be foreseen.
+template <class Wanted>
+BinList bins_where(Wanted&& wanted) {
   BinList list;
-  for (std::size_t bin = 0; bin < kHistogramBins; ++bin) list.add_if(((mask >> bin) & 1U) != 0, bin);
+  std::size_t size = 0;  // in a register: a byte that is written could be any member
+  for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
+    list.bins[size] = static_cast<std::uint8_t>(bin);
+    size += static_cast<std::size_t>(wanted(bin));
+  }
+  list.size = size;
   return list;
 }
 
 /// What a target point must be like to be similar to a query point: bins below `too_high`, and the `high` bins not
 /// below `enough`. The others cannot be too low.
 struct WantedBins {
-  std::array<std::uint8_t, kHistogramBins> too_high{};
-  std::array<std::uint8_t, kHistogramBins> enough{};
+  std::array<std::uint8_t, kStoredBins> too_high{};
+  std::array<std::uint8_t, kStoredBins> enough{};
   BinList high;
 
   WantedBins(const AngularHistogram& histogram, int tolerance_steps) {
     constexpr int kNone = static_cast<int>(kLevels) - 1;
-    for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
+    for (std::size_t bin = 0; bin < kStoredBins; ++bin) {
       too_high[bin] = static_cast<std::uint8_t>(std::min(histogram.bins[bin] + tolerance_steps + 1, kNone));
     }
-    for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
+    for (std::size_t bin = 0; bin < kStoredBins; ++bin) {
       enough[bin] = static_cast<std::uint8_t>(std::max(histogram.bins[bin] - tolerance_steps, 0));
     }
-    for (std::size_t bin = 0; bin < kHistogramBins; ++bin) high.add_if(enough[bin] > 0, bin);
+    high = bins_where([&](std::size_t bin) { return enough[bin] > 0; });
   }
 };
 
@@ -221,7 +222,7 @@ BitMatrix SimilarityIndex::matches(const ScanFeatures& query) const {
   // Block by block: the words of one block stay in the processor's cache while all query points go over them.
   for (std::size_t block = 0; block < peaks_.size(); ++block) {
     const std::size_t first = block * kBlockPoints;
-    const BinList peaks = bins_of(peaks_[block]);
+    const BinList peaks = bins_where([&](std::size_t bin) { return ((peaks_[block] >> bin) & 1U) != 0; });
     for (const Range& range : wanted) {
       if (range.end <= first || range.begin >= first + kBlockPoints) continue;
       const BlockWords similar = few(bins[range.query], at_least_.data() + block * kWordsPerBlock, peaks, highest);
