@@ -28,7 +28,7 @@ AngularHistogram normalised(const std::array<int, kHistogramBins>& counts, Histo
   const double whole = divisor(counts, norm);
   if (whole <= 0.0) return histogram;
   for (std::size_t b = 0; b < kHistogramBins; ++b) {
-    if (counts[b] == 0) continue;  // most of them
+    if (counts[b] == 0) continue;                                                              // most of them
     histogram.bins[b] = static_cast<std::uint8_t>(kHistogramScale * counts[b] / whole + 0.5);  // to the nearest
   }
   return histogram;
