@@ -2,7 +2,8 @@
 #include "command_line.hpp"
 
 #include <algorithm>
-#include <iostream>
+
+#include "console.hpp"
 
 namespace shapemap::cli {
 namespace {
@@ -68,10 +69,10 @@ bool parse(CLI::App& app, const std::vector<std::string>& arguments) {
   try {
     app.parse(reversed);
   } catch (const CLI::CallForVersion& e) {
-    std::cout << e.what() << '\n';
+    print_text(std::string(e.what()) + "\n");
     return false;
   } catch (const CLI::Success&) {
-    std::cout << app.help();
+    print_text(app.help());
     return false;
   } catch (const CLI::ParseError& e) {
     throw ConfigError(one_line(e.what()) + "; see '" + app.get_name() + " --help'");

@@ -17,8 +17,10 @@ void print_text(const std::string& text);
 /// `text` as one line that a terminal can show: control characters and bytes that are no UTF-8 become '?'.
 std::string printable(std::string text);
 
-/// To stderr, each line with the program's name and `prefix`; after `max_lines` only how many more there are.
-void print_lines(const std::string& prefix, const std::vector<std::string>& lines, std::size_t max_lines);
+/// To stderr, each line with the program's name and `prefix`; after `max_lines` only how many more there are, and
+/// `where` to find them.
+void print_lines(const std::string& prefix, const std::vector<std::string>& lines, std::size_t max_lines,
+                 const std::string& where = ", see --report");
 
 std::string log_summary_text(const LogSummary& summary);
 

@@ -11,13 +11,14 @@ namespace shapemap::cli {
 
 int run_convert(const ConvertArguments& arguments) {
   check_outputs({arguments.out_path}, arguments.in_path, arguments.force);
-  const Log log = read_log(arguments.in_path, arguments.from, arguments.reading);
+  Log log = read_log(arguments.in_path, arguments.from, arguments.reading);
 
   set_interrupt_policy(OnInterrupt::kFinishStep);
   OutputSet outputs;
   outputs.add(arguments.out_path, [&](const std::string& path) { write_log(log, path, arguments.to); });
   outputs.commit();
-  print_lines("warning: ", log.warnings, kMaxListed);
+  if (const std::string lost = what_is_lost(log, arguments.to); !lost.empty()) log.warnings.push_back(lost);
+  print_lines("warning: ", log.warnings, kMaxListed, "");
   return kExitOk;
 }
 

@@ -79,6 +79,9 @@ void check_out(const MapArguments& arguments) {
   if (arguments.map_path.empty()) throw ConfigError("no map asked for; give --out map.png, .pgm or .tif");
   const std::size_t dot = arguments.map_path.find_last_of("./");
   const std::string ending = dot == std::string::npos ? "" : arguments.map_path.substr(dot);
+  if (dot == 0 || arguments.map_path[dot - 1] == '/') {
+    throw ConfigError("--out '" + arguments.map_path + "' has no name before its ending");
+  }
   for (const char* known : {".png", ".pgm", ".tif", ".PNG", ".PGM", ".TIF"}) {
     if (ending == known) return;
   }

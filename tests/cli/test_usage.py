@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is typed: help, flags and the options file."""
 import re
+import subprocess
 import tomllib
 
 import pytest
@@ -18,6 +19,14 @@ def test_help_has_groups_examples_and_exit_codes(run, command):
     assert "Examples:" in result.stdout
     assert "Exit codes:" in result.stdout
     assert "--sensor-label" in result.stdout
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["info", "--help"], ["--version"], ["--dump-config"]])
+def test_text_that_cannot_be_printed_is_a_failure(cli_path, arguments):
+    with open("/dev/full", "w") as full:
+        result = subprocess.run([cli_path, *arguments], stdout=full, stderr=subprocess.PIPE, text=True)
+    assert result.returncode == 5
+    assert result.stderr == "shapemap-cli: cannot write to standard output: No space left on device\n"
 
 
 def test_help_tells_range_and_default_of_every_option(run):
@@ -48,6 +57,8 @@ def test_version_names_what_it_is_built_on(run):
         ["--out", "map.png"],
         ["room.log", "--out", "map.jpg"],
         ["room.log", "--out", "map"],
+        ["room.log", "--out", ".png"],
+        ["room.log", "--out", "folder/.png"],
         ["room.log", "more.log", "--out", "map.png"],
         ["room.log", "--carmen", "room.log", "--out", "map.png"],
         ["room.log", "--demo", "--out", "map.png"],

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/align/align.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <sstream>
+#include <thread>
 
+#include "shapemap/core/errors.hpp"
 #include "shapemap/core/parallel_for.hpp"
 #include "shapemap/match/lcs.hpp"
 
@@ -47,14 +50,50 @@ RotationMatch match_at_rotation(const MatchTarget& target, const Shape& query, c
     const Pose2 target_from_query{translation.target_from_query_m.x(), translation.target_from_query_m.y(),
                                   rotation_rad};
     const double limit_m = translation.mean_distance_m + options.overlap.slack_m;
+    const bool is_first = match.translation.num_correspondences == 0;
+    const std::size_t to_win = is_first ? 0 : static_cast<std::size_t>(match.overlap.num_points) + 1;
     const ScanOverlap overlap =
-        scan_overlap(partners_within(target.map, query, target_from_query, limit_m, options.overlap));
-    if (match.translation.num_correspondences > 0 && overlap.num_points <= match.overlap.num_points) continue;
+        scan_overlap(partners_within(target.map, query, target_from_query, limit_m, options.overlap, to_win));
+    if (static_cast<std::size_t>(overlap.num_points) < to_win) continue;
     match.segments = std::move(segments);
     match.translation = translation;
     match.overlap = overlap;
   }
   return match;
+}
+
+/// Passes the question whether to go on to whoever may be asked from one thread only, and the answer to all threads.
+class StopCheck {
+ public:
+  explicit StopCheck(const std::function<bool()>& keep_going) : keep_going_(keep_going) {}
+
+  bool stopped() {
+    if (keep_going_ && !stopped_ && std::this_thread::get_id() == asking_ && !keep_going_()) stopped_ = true;
+    return stopped_;
+  }
+  void throw_if_stopped() {
+    if (stopped()) throw Interrupted();
+  }
+
+ private:
+  const std::function<bool()>& keep_going_;
+  std::thread::id asking_ = std::this_thread::get_id();
+  std::atomic<bool> stopped_{false};
+};
+
+/// Every rotation of the grid, each by itself.
+std::vector<RotationMatch> match_rotations(const MatchTarget& target, const Shape& query, const AlignOptions& options,
+                                           bool keep_hypotheses, StopCheck& stop) {
+  const NeighbourDirections directions(query, options.histogram.radius_m);
+  const std::vector<double> rotations = rotation_grid(options.rotation);
+  std::vector<RotationMatch> matches(rotations.size());
+  parallel_for(rotations.size(), options.threads, [&](std::size_t i) {
+    if (stop.stopped()) return;
+    matches[i] = match_at_rotation(target, query, directions, rotations[i], options);
+    if (!keep_hypotheses) matches[i].lcs = matches[i].spread = {};
+  });
+  stop.throw_if_stopped();
+  return matches;
 }
 
 /// The rotation with the largest overlap; of equals, the smallest turn. -1 when no rotation had a correspondence.
@@ -131,6 +170,8 @@ std::vector<double> rotation_grid(const RotationOptions& options) {
 Alignment align(const PartialMap& target, const Shape& query, const AlignOptions& options, AlignTrace* trace) {
   Alignment result;
   Stopwatch watch;
+  StopCheck stop(options.keep_going);
+  if (trace) *trace = {};  // of an earlier alignment
   const auto min_points = static_cast<std::size_t>(options.min_points);
   if (target.num_points() < min_points || query.size() < min_points) {
     return refused(std::move(result), AlignStatus::kNoShape,
@@ -138,15 +179,9 @@ Alignment align(const PartialMap& target, const Shape& query, const AlignOptions
                         options.min_points, " are needed"));
   }
 
-  // Every rotation of the grid, each by itself; the largest overlap wins.
-  const MatchTarget match_to = match_target(target, options);
-  const NeighbourDirections directions(query, options.histogram.radius_m);
-  const std::vector<double> rotations = rotation_grid(options.rotation);
-  std::vector<RotationMatch> matches(rotations.size());
-  parallel_for(rotations.size(), options.threads, [&](std::size_t i) {
-    matches[i] = match_at_rotation(match_to, query, directions, rotations[i], options);
-    if (!trace) matches[i].lcs = matches[i].spread = {};  // only a trace wants to see them
-  });
+  // The rotation with the largest overlap wins. Only a trace wants to see the hypotheses.
+  const std::vector<RotationMatch> matches =
+      match_rotations(match_target(target, options), query, options, trace != nullptr, stop);
   const int best = best_rotation(matches);
   result.match_s = watch.lap_s();
   if (trace) {
@@ -170,6 +205,7 @@ Alignment align(const PartialMap& target, const Shape& query, const AlignOptions
   result.overlap_ratio = static_cast<double>(result.overlap) / static_cast<double>(query.size());
   result.icp_iterations = refined.iterations;
   result.icp_s = watch.lap_s();
+  stop.throw_if_stopped();
   result.query_from_sub_scan.resize(static_cast<std::size_t>(query.num_sub_scans));
   if (options.icp.decoupled) {
     result.query_from_sub_scan = decoupled_icp(target, query, refined.target_from_query,

@@ -64,6 +64,20 @@ Log read_log(const std::string& path, LogFormat format, const LogReadOptions& op
   throw InputError(path + ": unknown log format");
 }
 
+std::string what_is_lost(const Log& log, LogFormat format) {
+  if (format == LogFormat::kNist) return "";
+  bool headings = false;
+  bool references = false;
+  for (const Position& position : log.positions) {
+    references = references || position.reference_pose.has_value();
+    for (const SubScan& scan : position.sub_scans) headings = headings || scan.nominal_heading_rad != 0.0;
+  }
+  std::string lost;
+  if (headings) lost = "nominal headings become part of the mounts of the lasers";
+  if (references) lost += std::string(lost.empty() ? "" : ", ") + "reference poses are left out";
+  return lost.empty() ? "" : "a " + enum_name(format) + " log cannot hold all: " + lost;
+}
+
 void write_log(const Log& log, const std::string& path, LogFormat format, const LogPoses* poses) {
   if (format == LogFormat::kAuto) throw OutputError(path + ": a format to write must be named: rawlog, carmen or nist");
   if (poses != nullptr && poses->map_from_robot.size() != log.positions.size()) {

@@ -21,6 +21,8 @@ std::string extension_of(const std::string& path) {
   return extension;
 }
 
+constexpr double kUnknownGrey = 127.0;  // as cells that nobody saw
+
 struct Palette {
   cv::Scalar path;
   cv::Scalar start;
@@ -53,17 +55,22 @@ std::string length_text(double length_m) {
   return text;
 }
 
-void draw_scale_bar(cv::Mat& image, const GridMap& map, const cv::Scalar& ink) {
+/// A strip above the picture with a scale bar, where it hides nothing. Not below: the lower left corner is the origin.
+cv::Mat with_scale_bar(const cv::Mat& image, const GridMap& map, const cv::Scalar& ink) {
   const double length_m = scale_bar_length_m(map.width_cells * map.resolution_m);
   const int length = std::max(1, static_cast<int>(std::lround(length_m / map.resolution_m)));
   const int size = std::clamp(std::min(image.cols, image.rows) / 200, 1, 8);
-  const cv::Point left(4 * size, image.rows - 1 - 4 * size);
-  cv::line(image, left, left + cv::Point(length, 0), ink, size);
+  const int height = 20 * size;
+  cv::Mat framed;
+  cv::copyMakeBorder(image, framed, height, 0, 0, 0, cv::BORDER_CONSTANT, cv::Scalar::all(kUnknownGrey));
+  const cv::Point left(4 * size, height - 1 - 4 * size);
+  cv::line(framed, left, left + cv::Point(length, 0), ink, size);
   for (const int end : {0, length}) {
-    cv::line(image, left + cv::Point(end, -2 * size), left + cv::Point(end, 2 * size), ink, size);
+    cv::line(framed, left + cv::Point(end, -2 * size), left + cv::Point(end, 2 * size), ink, size);
   }
-  cv::putText(image, length_text(length_m), left + cv::Point(0, -4 * size), cv::FONT_HERSHEY_SIMPLEX, 0.35 * size, ink,
+  cv::putText(framed, length_text(length_m), left + cv::Point(0, -4 * size), cv::FONT_HERSHEY_SIMPLEX, 0.35 * size, ink,
               std::max(1, size / 2), cv::LINE_8);
+  return framed;
 }
 
 void draw_path(cv::Mat& image, const GridMap& map, const std::vector<PlacedPosition>& placed, const Palette& palette) {
@@ -101,7 +108,7 @@ void write_map_image(const GridMap& map, const std::string& path, const std::vec
       }
       const Palette palette = palette_for(colour);
       draw_path(image, map, *path_to_draw, palette);
-      draw_scale_bar(image, map, palette.scale_bar);
+      image = with_scale_bar(image, map, palette.scale_bar);
     }
     ok = cv::imencode(extension, image, encoded);
   } catch (const cv::Exception& e) {

@@ -2,6 +2,7 @@
 #include "rawlog.hpp"
 
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -138,12 +139,23 @@ class RawlogReader {
   std::size_t num_without_time_ = 0;
 };
 
+/// MRPT counts time in 64 bits of 100 ns since the year 1601.
+void require_rawlog_time(const Position& position, std::size_t index) {
+  constexpr double kEarliest_s = -11644473600.0;
+  constexpr double kLatest_s = 9.1e11;
+  if (position.timestamp_s > kEarliest_s && position.timestamp_s < kLatest_s) return;  // written so that NaN fails
+  std::ostringstream why;
+  why << "position " << index << " has the timestamp " << position.timestamp_s << ", which a rawlog cannot hold";
+  throw OutputError(why.str());
+}
+
 }  // namespace
 
 Log read_rawlog(ByteSource& source, const LogReadOptions& options) { return RawlogReader(source, options).read(); }
 
 /// An action, with odometry if there are poses, and a frame per position: MRPT's readers take nothing but such pairs.
 void write_rawlog(const Log& log, const LogPoses* poses, ByteSink& sink) {
+  for (std::size_t i = 0; i < log.positions.size(); ++i) require_rawlog_time(log.positions[i], i);
   Pose2 map_from_previous;
   for (std::size_t i = 0; i < log.positions.size(); ++i) {
     const Position& position = log.positions[i];

@@ -61,8 +61,10 @@ LogFormat recognise_log_format(ByteSource& source) {
       throw InputError(source.path() + ": unknown binary format (byte " + std::to_string(begin + i) + " is no text); " +
                        kExpected);
     }
+    // A NIST log says what it is in its first statement; CARMEN logs may begin with anything.
     const LogFormat format = format_of_line(line);
-    if (format != LogFormat::kAuto) return format;
+    const bool counts = format == LogFormat::kNist ? first_statement == 0 : format != LogFormat::kAuto;
+    if (counts) return format;
     Words words(line);
     const std::string_view first = words.next();
     if (first_statement == 0 && !first.empty() && first.front() != '#') first_statement = line_number;

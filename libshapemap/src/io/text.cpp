@@ -23,6 +23,21 @@ std::optional<Number> parse_whole(std::string_view word) {
   return value;
 }
 
+/// Control characters as `\xNN`: a zero would end the message.
+std::string escaped(const std::string& text) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte != 0x7F) {
+      result += c;
+    } else {
+      result += {'\\', 'x', kDigits[byte >> 4U], kDigits[byte & 0xFU]};
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 std::optional<std::string_view> LineReader::next() {
@@ -54,7 +69,7 @@ std::optional<std::string_view> LineReader::next() {
 
 std::string LineReader::where() const { return source_.path() + ":" + std::to_string(line_number_); }
 
-InputError LineReader::error(const std::string& what) const { return InputError(where() + ": " + what); }
+InputError LineReader::error(const std::string& what) const { return InputError(where() + ": " + escaped(what)); }
 
 bool Words::separates(char c) const {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f' || c == separator_;

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <deque>
 
+#include "shapemap/core/errors.hpp"
+
 namespace shapemap {
 namespace {
 
@@ -17,7 +19,8 @@ struct RecentScan {
 /// The chain of the paper: each scan against the partial map of the few before it.
 class Chain {
  public:
-  explicit Chain(const MappingOptions& options) : options_(options) {
+  Chain(const MappingOptions& options, RunObserver& observer) : options_(options) {
+    options_.align.keep_going = [&observer] { return observer.keep_going(); };
     options_.align.threads = options.chain.threads;
     options_.align.min_points = options.shape.min_points;
   }
@@ -113,14 +116,15 @@ std::string MapResult::why_not_in_map(const PositionResult& position) const {
 MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer) {
   validate_all(options);
   MapResult result;
-  Chain chain(options);
-  for (std::size_t i = 0; i < log.positions.size(); ++i) {
-    if (!observer.keep_going()) {
-      result.interrupted = true;
-      break;
+  Chain chain(options, observer);
+  try {
+    for (std::size_t i = 0; i < log.positions.size(); ++i) {
+      if (!observer.keep_going()) throw Interrupted();
+      chain.add(i, log.positions[i], result);
+      observer.on_progress(i + 1, log.positions.size());
     }
-    chain.add(i, log.positions[i], result);
-    observer.on_progress(i + 1, log.positions.size());
+  } catch (const Interrupted&) {  // between positions or within an alignment
+    result.interrupted = true;
   }
   result.largest_fragment = largest(result.fragments);
   return result;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 namespace shapemap {
@@ -16,6 +17,8 @@ constexpr std::size_t kLevels = static_cast<std::size_t>(kHistogramScale) + 2;
 
 /// Words that are worked on together, so that compilers make vector code of it.
 constexpr std::size_t kBlock = 2;
+constexpr std::size_t kBlockPoints = kBlock * BitMatrix::kWordBits;
+constexpr std::size_t kWordsPerBlock = kHistogramBins * kLevels * kBlock;
 
 /// Counters for 64 * kBlock target points, one bit of each to a word, that stay at "too many" once they overflow.
 /// They count to 2 ^ kPlanes - 1.
@@ -51,32 +54,94 @@ class BitCounters {
   std::array<Word, kBlock> overflow_{};
 };
 
-/// For each bin of one query point: which target points are too high, and which are high enough.
-struct BinRows {
-  std::array<const Word*, kHistogramBins> too_high{};
-  std::array<const Word*, kHistogramBins> high_enough{};
-};
-
-/// Words [first, last) of `similar`: the points of which `highest` bins or fewer differ.
-template <std::size_t kPlanes>
-void few_differences(const BinRows& rows, unsigned highest, std::size_t first, std::size_t last, Word* similar) {
-  for (std::size_t block = first / kBlock * kBlock; block < last; block += kBlock) {
-    BitCounters<kPlanes> differing;
-    for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
-      std::array<Word, kBlock> ones;
-      for (std::size_t w = 0; w < kBlock; ++w) {
-        ones[w] = rows.too_high[bin][block + w] | ~rows.high_enough[bin][block + w];
-      }
-      differing.add(ones);
-    }
-    for (std::size_t w = 0; w < kBlock; ++w) similar[block + w] = differing.not_above(highest, w);
-  }
-}
-
 /// Index of the lowest bit that is set in `word`, which is not 0.
 std::size_t lowest_bit(Word word) {
   static_assert(sizeof(Word) == sizeof(unsigned long long));
   return static_cast<std::size_t>(__builtin_ctzll(word));
+}
+
+using BlockWords = std::array<Word, kBlock>;
+
+/// Bins by their numbers.
+struct BinList {
+  std::array<std::uint8_t, kHistogramBins> bins{};
+  std::size_t size = 0;
+};
+
+/// The bins for which `wanted` is true, without a branch, since none could be foreseen.
+template <class Wanted>
+BinList bins_where(Wanted&& wanted) {
+  BinList list;
+  std::size_t size = 0;  // in a register: a byte that is written could be any member
+  for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
+    list.bins[size] = static_cast<std::uint8_t>(bin);
+    size += static_cast<std::size_t>(wanted(bin));
+  }
+  list.size = size;
+  return list;
+}
+
+/// What a target point must be like to be similar to a query point: bins below `too_high`, and the `high` bins not
+/// below `enough`. The others cannot be too low.
+struct WantedBins {
+  std::array<std::uint8_t, kStoredBins> too_high{};
+  std::array<std::uint8_t, kStoredBins> enough{};
+  BinList high;
+
+  WantedBins(const AngularHistogram& histogram, int tolerance_steps) {
+    constexpr int kNone = static_cast<int>(kLevels) - 1;
+    for (std::size_t bin = 0; bin < kStoredBins; ++bin) {
+      too_high[bin] = static_cast<std::uint8_t>(std::min(histogram.bins[bin] + tolerance_steps + 1, kNone));
+    }
+    for (std::size_t bin = 0; bin < kStoredBins; ++bin) {
+      enough[bin] = static_cast<std::uint8_t>(std::max(histogram.bins[bin] - tolerance_steps, 0));
+    }
+    high = bins_where([&](std::size_t bin) { return enough[bin] > 0; });
+  }
+};
+
+/// The points of a block of which `highest` bins or fewer differ. `at_least` has the block's words for each bin and
+/// level. A bin can be too high only if it is among `peaks`: neighbours in the order of tangents have their few peaks
+/// in the same bins, so that most bins need no look.
+template <std::size_t kPlanes>
+BlockWords few_differences(const WantedBins& wanted, const Word* at_least, const BinList& peaks, unsigned highest) {
+  const auto words = [&](std::size_t bin, std::size_t level) { return at_least + (bin * kLevels + level) * kBlock; };
+  BitCounters<kPlanes> differing;
+  BlockWords ones;
+  for (std::size_t k = 0; k < peaks.size; ++k) {
+    const Word* too_high = words(peaks.bins[k], wanted.too_high[peaks.bins[k]]);
+    for (std::size_t w = 0; w < kBlock; ++w) ones[w] = too_high[w];
+    differing.add(ones);
+  }
+  for (std::size_t k = 0; k < wanted.high.size; ++k) {  // no bin of a point is both too high and too low
+    const Word* enough = words(wanted.high.bins[k], wanted.enough[wanted.high.bins[k]]);
+    for (std::size_t w = 0; w < kBlock; ++w) ones[w] = ~enough[w];
+    differing.add(ones);
+  }
+  for (std::size_t w = 0; w < kBlock; ++w) ones[w] = differing.not_above(highest, w);
+  return ones;
+}
+
+/// Bits [begin, end) of a word.
+Word bits_between(std::size_t begin, std::size_t end) {
+  return (~Word{0} << begin) & (~Word{0} >> (BitMatrix::kWordBits - end));
+}
+
+/// Sets the bit of `order[k]` in `row` for each bit k of `found`. Neighbours in the order are mostly neighbours in the
+/// row: their bits are gathered before the row is touched.
+void set_bits(Word found, const std::size_t* order, Word* row) {
+  std::size_t at = 0;
+  Word gathered = 0;
+  for (; found != 0; found &= found - 1) {
+    const std::size_t point = order[lowest_bit(found)];
+    if (point / BitMatrix::kWordBits != at) {
+      row[at] |= gathered;
+      at = point / BitMatrix::kWordBits;
+      gathered = 0;
+    }
+    gathered |= Word{1} << (point % BitMatrix::kWordBits);
+  }
+  row[at] |= gathered;
 }
 
 std::vector<std::size_t> by_tangent(const std::vector<double>& tangents_rad) {
@@ -103,74 +168,73 @@ ScanFeatures features_of(const Shape& shape, const NeighbourDirections& directio
 SimilarityIndex::SimilarityIndex(const ScanFeatures& target, const SimilarityOptions& options)
     : options_(options),
       bin_tolerance_steps_(static_cast<int>(std::floor(options.bin_tolerance * kHistogramScale + 1e-9))),
-      order_(by_tangent(target.tangents_rad)),
-      at_least_(kHistogramBins * kLevels, (target.size() + kBlock * BitMatrix::kWordBits - 1) /
-                                              (kBlock * BitMatrix::kWordBits) * kBlock * BitMatrix::kWordBits) {
+      order_(by_tangent(target.tangents_rad)) {
+  static_assert(kHistogramBins <= BitMatrix::kWordBits, "a word holds a bit for each bin");
   tangents_rad_.reserve(order_.size());
   for (const std::size_t point : order_) tangents_rad_.push_back(target.tangents_rad[point]);
-  for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
-    for (std::size_t k = 0; k < order_.size(); ++k) {
-      at_least_.set(bin * kLevels + target.histograms[order_[k]].bins[bin], k);
+  const std::size_t num_blocks = (order_.size() + kBlockPoints - 1) / kBlockPoints;
+  at_least_.resize(num_blocks * kWordsPerBlock);
+  peaks_.resize(num_blocks);
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const AngularHistogram& histogram = target.histograms[order_[k]];
+    Word* block = at_least_.data() + k / kBlockPoints * kWordsPerBlock;
+    const std::size_t word = k % kBlockPoints / BitMatrix::kWordBits;
+    for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
+      block[(bin * kLevels + histogram.bins[bin]) * kBlock + word] |= Word{1} << (k % BitMatrix::kWordBits);
+      peaks_[k / kBlockPoints] |= static_cast<Word>(histogram.bins[bin] > bin_tolerance_steps_) << bin;
     }
-    for (std::size_t level = kLevels - 1; level-- > 0;) {
-      Word* here = at_least_.row(bin * kLevels + level);
-      const Word* above = here + at_least_.words_per_row();
-      for (std::size_t w = 0; w < at_least_.words_per_row(); ++w) here[w] |= above[w];
-    }
+  }
+  for (std::size_t row = 0; row < num_blocks * kHistogramBins; ++row) {
+    Word* levels = at_least_.data() + row * kLevels * kBlock;
+    for (std::size_t w = (kLevels - 1) * kBlock; w-- > 0;) levels[w] |= levels[w + kBlock];
   }
 }
 
-void SimilarityIndex::match_words(const AngularHistogram& query, std::size_t first, std::size_t last,
-                                  Words& similar) const {
-  // A target bin differs when it is above the query's bin and the tolerance, or not at least the bin less the
-  // tolerance.
-  BinRows rows;
-  for (std::size_t bin = 0; bin < kHistogramBins; ++bin) {
-    const int above = std::min(query.bins[bin] + bin_tolerance_steps_ + 1, static_cast<int>(kLevels) - 1);
-    const int least = std::max(query.bins[bin] - bin_tolerance_steps_, 0);
-    rows.too_high[bin] = at_least_.row(bin * kLevels + static_cast<std::size_t>(above));
-    rows.high_enough[bin] = at_least_.row(bin * kLevels + static_cast<std::size_t>(least));
+std::vector<SimilarityIndex::Range> SimilarityIndex::ranges(const ScanFeatures& query) const {
+  std::vector<Range> found;
+  found.reserve(query.size());
+  const auto add = [&](std::size_t i, double from_rad, double to_rad) {
+    const auto begin = std::lower_bound(tangents_rad_.begin(), tangents_rad_.end(), from_rad);
+    const auto end = std::upper_bound(tangents_rad_.begin(), tangents_rad_.end(), to_rad);
+    if (begin >= end) return;
+    found.push_back({i, static_cast<std::size_t>(begin - tangents_rad_.begin()),
+                     static_cast<std::size_t>(end - tangents_rad_.begin())});
+  };
+  for (std::size_t i = 0; i < query.size(); ++i) {
+    const double from_rad = query.tangents_rad[i] - options_.tangent_tolerance_rad;
+    const double to_rad = query.tangents_rad[i] + options_.tangent_tolerance_rad;
+    add(i, from_rad, to_rad);
+    // Minus and plus half a turn are one direction: at the seam itself, both ends are looked up.
+    if (from_rad <= -kPi) add(i, from_rad + 2 * kPi, kPi);
+    if (to_rad >= kPi) add(i, -kPi, to_rad - 2 * kPi);
   }
-  const auto highest = static_cast<unsigned>(options_.max_differing_bins);
-  if (highest < 4) {  // two planes hold the paper's limit
-    few_differences<2>(rows, highest, first, last, similar.data());
-  } else {
-    few_differences<6>(rows, highest, first, last, similar.data());
-  }
-}
-
-void SimilarityIndex::match_range(const AngularHistogram& query, double from_rad, double to_rad, Words& similar,
-                                  Word* row) const {
-  const auto begin = static_cast<std::size_t>(std::lower_bound(tangents_rad_.begin(), tangents_rad_.end(), from_rad) -
-                                              tangents_rad_.begin());
-  const auto end = static_cast<std::size_t>(std::upper_bound(tangents_rad_.begin(), tangents_rad_.end(), to_rad) -
-                                            tangents_rad_.begin());
-  if (begin >= end) return;
-  const std::size_t first_word = begin / BitMatrix::kWordBits;
-  const std::size_t last_word = (end - 1) / BitMatrix::kWordBits;
-  match_words(query, first_word, last_word + 1, similar);
-  similar[first_word] &= ~Word{0} << (begin % BitMatrix::kWordBits);
-  similar[last_word] &= ~Word{0} >> (BitMatrix::kWordBits - 1 - (end - 1) % BitMatrix::kWordBits);
-  for (std::size_t w = first_word; w <= last_word; ++w) {
-    for (Word rest = similar[w]; rest != 0; rest &= rest - 1) {
-      const std::size_t point = order_[w * BitMatrix::kWordBits + lowest_bit(rest)];
-      row[point / BitMatrix::kWordBits] |= Word{1} << (point % BitMatrix::kWordBits);
-    }
-  }
+  return found;
 }
 
 BitMatrix SimilarityIndex::matches(const ScanFeatures& query) const {
   BitMatrix bits(query.size(), order_.size());
-  Words similar(at_least_.words_per_row());
-  for (std::size_t i = 0; i < query.size(); ++i) {
-    const AngularHistogram& wanted = query.histograms[i];
-    const double tangent_rad = query.tangents_rad[i];
-    const double from_rad = tangent_rad - options_.tangent_tolerance_rad;
-    const double to_rad = tangent_rad + options_.tangent_tolerance_rad;
-    match_range(wanted, from_rad, to_rad, similar, bits.row(i));
-    // Minus and plus half a turn are one direction: at the seam itself, both ends are looked up.
-    if (from_rad <= -kPi) match_range(wanted, from_rad + 2 * kPi, kPi, similar, bits.row(i));
-    if (to_rad >= kPi) match_range(wanted, -kPi, to_rad - 2 * kPi, similar, bits.row(i));
+  const auto highest = static_cast<unsigned>(options_.max_differing_bins);
+  const auto few = highest < 4 ? few_differences<2> : few_differences<6>;  // two planes hold the paper's limit
+  const std::vector<Range> wanted = ranges(query);
+  std::vector<WantedBins> bins;
+  bins.reserve(query.size());
+  for (const AngularHistogram& histogram : query.histograms) bins.emplace_back(histogram, bin_tolerance_steps_);
+  // Block by block: the words of one block stay in the processor's cache while all query points go over them.
+  for (std::size_t block = 0; block < peaks_.size(); ++block) {
+    const std::size_t first = block * kBlockPoints;
+    const BinList peaks = bins_where([&](std::size_t bin) { return ((peaks_[block] >> bin) & 1U) != 0; });
+    for (const Range& range : wanted) {
+      if (range.end <= first || range.begin >= first + kBlockPoints) continue;
+      const BlockWords similar = few(bins[range.query], at_least_.data() + block * kWordsPerBlock, peaks, highest);
+      for (std::size_t w = 0; w < kBlock; ++w) {
+        const std::size_t origin = first + w * BitMatrix::kWordBits;
+        const std::size_t begin = std::max(range.begin, origin);
+        const std::size_t end = std::min(range.end, origin + BitMatrix::kWordBits);
+        if (begin >= end) continue;
+        set_bits(similar[w] & bits_between(begin - origin, end - origin), order_.data() + origin,
+                 bits.row(range.query));
+      }
+    }
   }
   return bits;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 namespace shapemap {
@@ -27,8 +28,8 @@ AngularHistogram normalised(const std::array<int, kHistogramBins>& counts, Histo
   const double whole = divisor(counts, norm);
   if (whole <= 0.0) return histogram;
   for (std::size_t b = 0; b < kHistogramBins; ++b) {
-    if (counts[b] == 0) continue;  // most of them
-    histogram.bins[b] = static_cast<std::uint8_t>(std::lround(kHistogramScale * counts[b] / whole));
+    if (counts[b] == 0) continue;                                                              // most of them
+    histogram.bins[b] = static_cast<std::uint8_t>(kHistogramScale * counts[b] / whole + 0.5);  // to the nearest
   }
   return histogram;
 }
@@ -36,28 +37,29 @@ AngularHistogram normalised(const std::array<int, kHistogramBins>& counts, Histo
 NeighbourDirections::NeighbourDirections(const Shape& shape, double radius_m) {
   // Sweeps over the points by x. Each pair is met once and gives two directions, opposite to each other.
   struct Pair {
-    std::size_t from;
-    std::size_t to;
+    std::uint32_t from;
+    std::uint32_t to;
     double direction_rad;
   };
-  std::vector<std::size_t> order(shape.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::vector<std::uint32_t> order(shape.size());
+  std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return shape.points[a].p_m.x() < shape.points[b].p_m.x(); });
+                   [&](std::uint32_t a, std::uint32_t b) { return shape.points[a].p_m.x() < shape.points[b].p_m.x(); });
+  std::vector<Point2> ordered_m;
+  ordered_m.reserve(order.size());
+  for (const std::uint32_t i : order) ordered_m.push_back(shape.points[i].p_m);
   std::vector<Pair> pairs;
   std::vector<std::size_t> counts(shape.size(), 0);
   const double radius2 = radius_m * radius_m;
   for (std::size_t k = 0; k < order.size(); ++k) {
-    const std::size_t i = order[k];
     for (std::size_t l = k + 1; l < order.size(); ++l) {
-      const std::size_t j = order[l];
-      const Point2 to = shape.points[j].p_m - shape.points[i].p_m;
+      const Point2 to = ordered_m[l] - ordered_m[k];
       if (to.x() > radius_m) break;
       const double distance2 = to.squaredNorm();
       if (distance2 > radius2 || distance2 == 0.0) continue;
-      pairs.push_back({i, j, std::atan2(to.y(), to.x())});
-      ++counts[i];
-      ++counts[j];
+      pairs.push_back({order[k], order[l], std::atan2(to.y(), to.x())});
+      ++counts[order[k]];
+      ++counts[order[l]];
     }
   }
   first_.resize(shape.size() + 1, 0);
@@ -72,16 +74,28 @@ NeighbourDirections::NeighbourDirections(const Shape& shape, double radius_m) {
 
 std::vector<AngularHistogram> NeighbourDirections::histograms(double rotation_rad, HistogramNorm norm) const {
   constexpr double kBinsPerRad = static_cast<double>(kHistogramBins) / (2.0 * kPi);
-  constexpr int kBins = static_cast<int>(kHistogramBins);
-  // Directions lie in [-pi, pi] and the turn in [-pi, pi]: one period more makes the bin number positive.
+  // Directions lie in [-pi, pi] and the turn in [-pi, pi]: with one period more, bin numbers are 0 to twice the bins.
+  constexpr std::size_t kUnfolded = 2 * kHistogramBins + 1;
   const double turn_rad = wrap_angle(rotation_rad) + 2.0 * kPi;
+  const auto bin_of = [&](double direction_rad) {
+    return static_cast<std::size_t>(static_cast<int>((direction_rad + turn_rad) * kBinsPerRad));
+  };
   std::vector<AngularHistogram> result(first_.size() - 1);
   for (std::size_t i = 0; i < result.size(); ++i) {
-    std::array<int, kHistogramBins> counts{};
-    for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) {
-      const int bin = static_cast<int>((directions_rad_[k] + turn_rad) * kBinsPerRad) % kBins;
-      ++counts[static_cast<std::size_t>(bin)];
+    // Neighbours often have like directions. Two counters in turn need not wait for each other.
+    std::array<int, kUnfolded> even{};
+    std::array<int, kUnfolded> odd{};
+    std::size_t k = first_[i];
+    for (; k + 1 < first_[i + 1]; k += 2) {
+      ++even[bin_of(directions_rad_[k])];
+      ++odd[bin_of(directions_rad_[k + 1])];
     }
+    if (k < first_[i + 1]) ++even[bin_of(directions_rad_[k])];
+    std::array<int, kHistogramBins> counts{};
+    for (std::size_t b = 0; b < kHistogramBins; ++b) {
+      counts[b] = even[b] + even[b + kHistogramBins] + odd[b] + odd[b + kHistogramBins];
+    }
+    counts[0] += even.back() + odd.back();
     result[i] = normalised(counts, norm);
   }
   return result;

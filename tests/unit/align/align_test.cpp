@@ -118,8 +118,13 @@ TEST(Align, WithoutShapeIsRefusedWithTheNumbers) {
   Shape few = shape;
   few.points.resize(9);
   for (const auto& [reference, query] : {std::pair{few, shape}, {shape, few}, {Shape{}, Shape{}}}) {
-    const Alignment refused = align(reference, query, options_for_test());
+    AlignTrace trace;
+    trace.best_rotation = 2;
+    trace.rotations.resize(5);
+    const Alignment refused = align(reference, query, options_for_test(), &trace);
     EXPECT_EQ(refused.status, AlignStatus::kNoShape);
+    EXPECT_EQ(trace.best_rotation, -1) << "nothing is left of an earlier alignment";
+    EXPECT_TRUE(trace.rotations.empty());
     EXPECT_THAT(refused.reason, HasSubstr("10 are needed"));
     EXPECT_THAT(refused.ref_from_query, IsNanPose());
   }

@@ -96,6 +96,17 @@ TEST(PartnersWithin, EqualBruteForceUnderBothRules) {
   }
 }
 
+TEST(PartnersWithin, GivesUpWhenAsManyAsAskedForCannotBeReached) {
+  const PartialMap target = map_of({{{0.0, 0.0}, 0.0, 0}});
+  std::vector<ShapePoint> points(10, {{0.0, 0.1}, 0.0, 0});
+  for (std::size_t i = 0; i < 5; ++i) points[i].p_m.x() = 9.0;  // far from everything
+  const Shape query = query_of(points);
+  for (const OverlapRule rule : {OverlapRule::kNearest, OverlapRule::kAny}) {
+    EXPECT_EQ(partners_within(target, query, {}, 0.5, with_rule(rule), 5).size(), 5U);
+    EXPECT_LT(partners_within(target, query, {}, 0.5, with_rule(rule), 6).size(), 5U);
+  }
+}
+
 TEST(ScanOverlap, CountsPartnersAndAveragesTheirDistances) {
   const ScanOverlap overlap = scan_overlap({{0, 0, 0.1}, {1, 5, 0.2}, {2, 5, 0.6}});
   EXPECT_EQ(overlap.num_points, 3);

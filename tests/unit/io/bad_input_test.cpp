@@ -48,6 +48,8 @@ TEST(BadInput, WhatIsNoLog) {
   EXPECT_THAT(input_error(folder.write_gz("junk.gz", junk)), HasSubstr("expected an MRPT rawlog"));
   EXPECT_THAT(input_error(folder.write("prose", "\nlorem ipsum\ndolor\n")),
               AllOf(HasSubstr("prose:2: unknown log format"), HasSubstr("shapemap-scans 1"), Not(HasSubstr("\n"))));
+  EXPECT_THAT(input_error(folder.write("letter", "Dear reader,\n12 monkeys\n1 2 3\n")),
+              HasSubstr("letter:1: unknown log format; expected an MRPT rawlog"));
   EXPECT_THAT(input_error(folder.write("odom", "ODOM 1 2 3\n")), HasSubstr("no 2D laser scans"));
 }
 
@@ -56,6 +58,8 @@ TEST(BadInput, AForcedFormatThatDoesNotFit) {
   const std::string carmen = folder.write("a.log", carmen_lines(2));
   EXPECT_THAT(input_error(carmen, LogFormat::kRawlog), HasSubstr("no MRPT rawlog"));
   EXPECT_THAT(input_error(carmen, LogFormat::kNist), HasSubstr("a.log:1: 'FLASER' where 'shapemap-scans 1'"));
+  const std::string zero = folder.write("zero", std::string("a\0b\x7F 1", 6) + "\n");
+  EXPECT_THAT(input_error(zero, LogFormat::kNist), HasSubstr("zero:1: 'a\\x00b\\x7f' where"));
   EXPECT_THAT(input_error(folder.write("b.nist", "shapemap-scans 1\n"), LogFormat::kCarmen),
               HasSubstr("no 2D laser scans"));
 }

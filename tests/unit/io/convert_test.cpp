@@ -72,6 +72,31 @@ TEST(Convert, AnyFormatToAnyOtherKeepsThePoints) {
   }
 }
 
+TEST(Convert, ATimeThatARawlogCannotHoldIsRefused) {
+  const TempFolder folder;
+  for (const double timestamp_s : {1e300, -1e300, 1e12, -2e10, std::nan("")}) {
+    Log log = flaser_log();
+    log.positions.push_back(log.positions.front());
+    log.positions.back().timestamp_s = timestamp_s;
+    try {
+      write_log(log, folder.path("a.rawlog"), LogFormat::kRawlog);
+      ADD_FAILURE() << timestamp_s;
+    } catch (const OutputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("position 1 has the timestamp"));
+    }
+    EXPECT_TRUE(folder.names().empty());
+  }
+}
+
+TEST(Convert, WhatIsNotKeptIsSaid) {
+  Log log = awkward_log();
+  EXPECT_EQ(what_is_lost(log, LogFormat::kNist), "");
+  EXPECT_THAT(what_is_lost(log, LogFormat::kCarmen), HasSubstr("nominal headings"));
+  log.positions[0].reference_pose = Pose2{};
+  EXPECT_THAT(what_is_lost(log, LogFormat::kRawlog), HasSubstr(", reference poses are left out"));
+  EXPECT_EQ(what_is_lost(flaser_log(), LogFormat::kCarmen), "");
+}
+
 TEST(Convert, TextFormatsKeepEveryBit) {
   const TempFolder folder;
   const Log log = awkward_log();

@@ -91,17 +91,39 @@ TEST_F(MapFiles, APathIsDrawnInColourOrInGrey) {
   write_map_image(map, in_folder("map.png"), &world.placed);
   const cv::Mat colour = cv::imread(in_folder("map.png"), cv::IMREAD_UNCHANGED);
   ASSERT_EQ(colour.type(), CV_8UC3);
-  const cv::Vec3b start = colour.at<cv::Vec3b>(robot.y(), robot.x());
+  ASSERT_EQ(colour.cols, map.width_cells);
+  const int strip = colour.rows - map.height_cells;  // above the map: its lower left corner is the origin
+  ASSERT_GT(strip, 0);
+  const cv::Vec3b start = colour.at<cv::Vec3b>(strip + robot.y(), robot.x());
   EXPECT_GT(start[1], start[2]) << "the first position is green";
 
   write_map_image(map, in_folder("map.pgm"), &world.placed);
   const cv::Mat grey = cv::imread(in_folder("map.pgm"), cv::IMREAD_UNCHANGED);
   ASSERT_EQ(grey.type(), CV_8UC1);
-  EXPECT_NE(grey.at<std::uint8_t>(robot.y(), robot.x()),
+  EXPECT_NE(grey.at<std::uint8_t>(strip + robot.y(), robot.x()),
             map.grey[static_cast<std::size_t>(robot.y() * map.width_cells + robot.x())]);
   const Eigen::Vector2i wall = map.pixel_at(world.wall_ahead_m);
   const std::uint8_t wall_grey = map.grey[static_cast<std::size_t>(wall.y() * map.width_cells + wall.x())];
-  EXPECT_EQ(colour.at<cv::Vec3b>(wall.y(), wall.x()), cv::Vec3b(wall_grey, wall_grey, wall_grey));
+  EXPECT_EQ(colour.at<cv::Vec3b>(strip + wall.y(), wall.x()), cv::Vec3b(wall_grey, wall_grey, wall_grey));
+}
+
+TEST_F(MapFiles, TheScaleBarHidesNothing) {
+  const World world;
+  const GridMap map = world.map();
+  write_map_image(map, in_folder("map.pgm"), &world.placed);
+  const cv::Mat image = cv::imread(in_folder("map.pgm"), cv::IMREAD_UNCHANGED);
+  const int strip = image.rows - map.height_cells;
+  cv::Mat cells(map.height_cells, map.width_cells, CV_8UC1, const_cast<std::uint8_t*>(map.grey.data()));
+  int num_drawn = 0;
+  for (int y = 0; y < cells.rows; ++y) {
+    for (int x = 0; x < cells.cols; ++x) {
+      if (image.at<std::uint8_t>(strip + y, x) == cells.at<std::uint8_t>(y, x)) continue;
+      ++num_drawn;
+      const Point2 at_m = map.origin_m + map.resolution_m * Point2(x + 0.5, map.height_cells - y - 0.5);
+      EXPECT_LT((at_m - world.placed[0].map_from_robot.translation()).norm(), 0.4) << x << ' ' << y;
+    }
+  }
+  EXPECT_GT(num_drawn, 0);
 }
 
 TEST_F(MapFiles, AnotherEndingIsRefusedAndNothingIsLeft) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "shapemap/align/alignment.hpp"
@@ -68,6 +69,8 @@ struct AlignOptions {
   TrustOptions trust;
   int threads = 1;      ///< does not change the result
   int min_points = 10;  ///< ShapeOptions::min_points
+  /// Asked before each rotation and step, if given, from the thread that aligns; false ends it with Interrupted.
+  std::function<bool()> keep_going;
 };
 
 /// What one rotation of the grid led to.

@@ -43,9 +43,10 @@ struct Partner {
   double distance_m = 0.0;
 };
 
-/// The partner of each query point within `max_distance_m`, for those that have one.
+/// The partner of each query point within `max_distance_m`, for those that have one. Gives up, with fewer than
+/// `at_least`, as soon as so many cannot be reached.
 std::vector<Partner> partners_within(const PartialMap& target, const Shape& query, const Pose2& target_from_query,
-                                     double max_distance_m, const OverlapOptions& options);
+                                     double max_distance_m, const OverlapOptions& options, std::size_t at_least = 0);
 
 struct ScanOverlap {
   int num_points = 0;            ///< the scan overlap measure

@@ -11,7 +11,8 @@ struct RunObserver {
   virtual ~RunObserver() = default;
   virtual void on_progress(std::size_t /*done*/, std::size_t /*total*/) {}
   virtual void on_warning(std::string_view /*message*/) {}
-  /// Asked once per position; false ends the run with what has been mapped so far.
+  /// Asked before each position and between the steps of its alignment; false ends the run with what has been mapped
+  /// so far.
   virtual bool keep_going() { return true; }
 };
 

@@ -63,6 +63,9 @@ struct LogPoses {
 /// positions, or null) becomes the odometry. Throws OutputError.
 void write_log(const Log& log, const std::string& path, LogFormat format, const LogPoses* poses = nullptr);
 
+/// One line on what of `log` is not kept as such in `format`; empty when there is nothing. The points always are.
+std::string what_is_lost(const Log& log, LogFormat format);
+
 /// What a user wants to know of a log before mapping it.
 struct LogSummary {
   struct Sensor {

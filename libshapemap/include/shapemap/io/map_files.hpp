@@ -9,8 +9,8 @@
 /// Maps and trajectories in the formats of other tools.
 namespace shapemap {
 
-/// Writes .png, .pgm or .tif by the ending of `path`. With a path to draw, also the positions and a scale bar; the
-/// grey cells below stay what they are elsewhere. Throws OutputError.
+/// Writes .png, .pgm or .tif by the ending of `path`. With a path to draw, also the positions, and a strip above the
+/// map with a scale bar; the grey cells below stay what they are elsewhere. Throws OutputError.
 void write_map_image(const GridMap& map, const std::string& path, const std::vector<PlacedPosition>* path_to_draw);
 
 /// The map.yaml that ROS map_server reads, for the image called `image_name` beside it.

@@ -71,19 +71,24 @@ class SimilarityIndex {
   BitMatrix matches(const ScanFeatures& query) const;
 
  private:
-  using Words = std::vector<BitMatrix::Word>;
+  /// The target points, by position in `order_`, whose tangents are close enough to that of a query point.
+  struct Range {
+    std::size_t query;
+    std::size_t begin;
+    std::size_t end;
+  };
 
-  void match_range(const AngularHistogram& query, double from_rad, double to_rad, Words& similar,
-                   BitMatrix::Word* row) const;
-  void match_words(const AngularHistogram& query, std::size_t first, std::size_t last, Words& similar) const;
+  std::vector<Range> ranges(const ScanFeatures& query) const;
 
   SimilarityOptions options_;
   int bin_tolerance_steps_;           ///< in steps of the stored bins
   std::vector<std::size_t> order_;    ///< target points by ascending tangent in [-pi, pi]
   std::vector<double> tangents_rad_;  ///< in that order
-  /// A row for each bin and level: the points, in that order, whose bin is at that level or above. Differing bins of
-  /// one query point and 64 target points are then counted at once, with bits side by side.
-  BitMatrix at_least_;
+  /// Block after block of points in that order; in a block, for each bin and level, the points whose bin is at that
+  /// level or above. Differing bins of one query point and many target points are then counted at once, with bits side
+  /// by side.
+  std::vector<BitMatrix::Word> at_least_;
+  std::vector<BitMatrix::Word> peaks_;  ///< per block: a bit for each bin that is above the tolerance in any point
 };
 
 }  // namespace shapemap
