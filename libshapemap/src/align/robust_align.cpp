@@ -1,123 +1,68 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/align/robust_align.hpp"
 
-#include <algorithm>
 #include <cmath>
-
-#include "shapemap/match/rotation_hypotheses.hpp"
-#include "shapemap/match/shape_hypotheses.hpp"
+#include <sstream>
 
 namespace shapemap {
 namespace {
 
-/// Poses closer than this are one and the same after refinement.
-constexpr double kSamePlace_m = 0.20;
-constexpr double kSameHeading_rad = 5 * kDegree;
-
-/// Before refinement, poses are off by up to a cell of the votes: distances are taken this much wider.
-constexpr double kCoarseSlack = 2.0;
-constexpr std::size_t kCoarseStride = 2;
-
-constexpr double kScorePerResidual_m = 56.0;
-
-bool better(const PoseHypothesis& a, const PoseHypothesis& b) { return a.score > b.score; }
-
-bool same_place(const Pose2& a, const Pose2& b) {
-  return (a.translation() - b.translation()).norm() < kSamePlace_m &&
-         angle_between(a.theta_rad, b.theta_rad) < kSameHeading_rad;
+RankedPose ranked_pose(const PoseHypothesis& pose) {
+  const double total = std::max(pose.visibility.total(), 1e-9);
+  return {pose.ref_from_query, pose.score, pose.visibility.agree / total, pose.visibility.crossed / total};
 }
 
-/// The two scans of an alignment and what their hypotheses come from.
-class Search {
- public:
-  Search(const ScanView& reference, const ScanView& query, const RobustOptions& options)
-      : reference_(reference),
-        query_(query),
-        options_(options),
-        voting_(reference, max_shift_m(reference, query, options.voting), options.voting),
-        shapes_(reference, query) {}
+std::string text_of(const char* before, double value, const char* after) {
+  std::ostringstream stream;
+  stream.precision(3);
+  stream << before << value << after;
+  return stream.str();
+}
 
-  std::vector<PoseHypothesis> among(const std::vector<double>& rotations_rad, int peaks, int shape_segments) const {
-    std::vector<PoseHypothesis> coarse;
-    for (const double rotation_rad : rotations_rad) {
-      for (const Point2& shift_m : voting_.peaks(query_, rotation_rad, peaks)) {
-        coarse.push_back(judged(shift_m, rotation_rad));
-      }
-      if (shape_segments == 0) continue;
-      for (const Point2& shift_m : shapes_.translations(rotation_rad, shape_segments)) {
-        coarse.push_back(judged(shift_m, rotation_rad));
-      }
-    }
-    std::stable_sort(coarse.begin(), coarse.end(), better);
-    if (coarse.size() > static_cast<std::size_t>(options_.hypotheses.refined)) {
-      coarse.resize(static_cast<std::size_t>(options_.hypotheses.refined));
-    }
-    std::vector<PoseHypothesis> fine;
-    for (const PoseHypothesis& pose : coarse) {
-      fine.push_back(refined_hypothesis(reference_, query_, pose.ref_from_query, options_));
-    }
-    return best_distinct(std::move(fine), options_.hypotheses.kept);
+void give_verdict(Alignment& alignment, double agree, const ConfidenceOptions& options) {
+  const double deviation_m = worst_deviation_m(alignment.covariance);
+  if (agree < options.min_agree) {
+    alignment.status = AlignStatus::kTooLittleOverlap;
+    alignment.reason = text_of("only a share of ", agree, " of the points agrees with what the other scan saw");
+    alignment.ref_from_query = kNoPose;
+  } else if (alignment.probability < options.sure_probability) {
+    alignment.status = AlignStatus::kAmbiguous;
+    alignment.reason = text_of("the pose is right with a probability of ", alignment.probability, " only");
+  } else if (deviation_m > options.max_deviation_m) {
+    alignment.status = AlignStatus::kDegenerate;
+    alignment.reason = text_of("in one direction the position is known to ", deviation_m, " m only");
+  } else {
+    alignment.status = AlignStatus::kOk;
   }
-
- private:
-  PoseHypothesis judged(const Point2& shift_m, double rotation_rad) const {
-    PoseHypothesis pose;
-    pose.ref_from_query = {shift_m.x(), shift_m.y(), rotation_rad};
-    pose.score = visibility_score(
-        visibility(reference_, query_, pose.ref_from_query, options_.visibility, kCoarseSlack, kCoarseStride));
-    return pose;
-  }
-
-  const ScanView& reference_;
-  const ScanView& query_;
-  const RobustOptions& options_;
-  TranslationVoting voting_;
-  ShapeHypotheses shapes_;
-};
-
-std::vector<double> all_rotations(double step_rad) {
-  std::vector<double> rotations_rad;
-  const auto count = static_cast<int>(std::ceil(2.0 * kPi / step_rad));
-  for (int k = 0; k < count; ++k) rotations_rad.push_back(wrap_angle(k * step_rad));
-  return rotations_rad;
 }
 
 }  // namespace
 
-std::vector<PoseHypothesis> pose_hypotheses(const ScanView& reference, const ScanView& query,
-                                            const RobustOptions& options) {
-  const Search search(reference, query, options);
-  std::vector<PoseHypothesis> found = search.among(
-      rotation_hypotheses(reference.tangents, query.tangents, options.hypotheses.rotation_peaks),
-      options.voting.peaks, options.hypotheses.shape_segments);
-  if (!found.empty() && found.front().score >= options.hypotheses.all_rotations_below) return found;
-  // Few lines, or little in common: tangents alone do not tell the rotation.
-  std::vector<PoseHypothesis> more = search.among(all_rotations(options.hypotheses.all_rotations_step_rad), std::max(1, options.voting.peaks / 4), 0);
-  more.insert(more.end(), found.begin(), found.end());
-  return best_distinct(std::move(more), options.hypotheses.kept);
-}
-
-PoseHypothesis refined_hypothesis(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
-                                  const RobustOptions& options) {
-  PoseHypothesis pose;
-  pose.fit = fit_to_lines(reference, query, ref_from_query, options.line);
-  pose.ref_from_query = pose.fit.ref_from_query;
-  pose.visibility = visibility(reference, query, pose.ref_from_query, options.visibility);
-  pose.score = visibility_score(pose.visibility) - kScorePerResidual_m * pose.fit.rms_m;
-  return pose;
-}
-
-std::vector<PoseHypothesis> best_distinct(std::vector<PoseHypothesis> hypotheses, int count) {
-  std::stable_sort(hypotheses.begin(), hypotheses.end(), better);
-  std::vector<PoseHypothesis> distinct;
-  for (PoseHypothesis& pose : hypotheses) {
-    if (distinct.size() == static_cast<std::size_t>(count)) break;
-    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const PoseHypothesis& other) {
-      return same_place(other.ref_from_query, pose.ref_from_query);
-    });
-    if (!known) distinct.push_back(std::move(pose));
+Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chosen, double margin,
+                 const ConfidenceOptions& options) {
+  Alignment alignment;
+  if (hypotheses.empty()) {
+    alignment.status = AlignStatus::kNoCorrespondences;
+    alignment.reason = "no pose brings similar surfaces together";
+    return alignment;
   }
-  return distinct;
+  const PoseHypothesis& best = hypotheses.at(chosen);
+  alignment.ref_from_query = best.ref_from_query;
+  alignment.probability = match_probability(best, margin);
+  alignment.covariance = pose_covariance(best.fit);
+  alignment.ranked.push_back(ranked_pose(best));
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    if (i != chosen) alignment.ranked.push_back(ranked_pose(hypotheses[i]));
+  }
+  alignment.overlap_ratio = alignment.ranked.front().agree;
+  give_verdict(alignment, alignment.overlap_ratio, options);
+  return alignment;
+}
+
+Alignment robust_align(const ScanView& reference, const ScanView& query, const RobustOptions& options) {
+  const std::vector<PoseHypothesis> poses = pose_hypotheses(reference, query, options.search);
+  const double margin = poses.size() > 1 ? poses[0].score - poses[1].score : kFullMargin;
+  return judged(poses, 0, margin, options.confidence);
 }
 
 }  // namespace shapemap

@@ -4,6 +4,7 @@
 namespace shapemap {
 
 void make_strict_paper(MappingOptions& options) {
+  options.chain.method = Method::kPaper;
   options.shape.points = ShapePoints::kBeams;
   options.align.histogram.norm = HistogramNorm::kCount;
   options.align.lcs.target = LcsTarget::kConcatenated;

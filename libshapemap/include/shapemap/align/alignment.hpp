@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <limits>
 #include <string>
@@ -23,20 +24,38 @@ enum class AlignStatus {
   kNoCorrespondences,      ///< no similar structure, or the filters dropped all of it
   kTooFewCorrespondences,  ///< fewer than asked for
   kTooLittleOverlap,       ///< the aligned scans hardly cover each other
+  kAmbiguous,              ///< the best pose may well be wrong: others fit about as well, or it fits badly itself
+  kDegenerate,             ///< right but for a direction that the scans do not hold, such as along a bare corridor
 };
 
 template <>
 struct EnumNames<AlignStatus> {
-  static constexpr std::array<std::string_view, 5> names{"ok", "no-shape", "no-correspondences",
-                                                         "too-few-correspondences", "too-little-overlap"};
+  static constexpr std::array<std::string_view, 7> names{
+      "ok",        "no-shape",  "no-correspondences", "too-few-correspondences", "too-little-overlap",
+      "ambiguous", "degenerate"};
 };
 
-/// The answer of align(). There is no pose unless `ok()`: `ref_from_query` then takes the query scan to the frame
-/// of the reference.
+/// One of the poses that a scan may have.
+struct RankedPose {
+  Pose2 ref_from_query = kNoPose;
+  double score = 0.0;    ///< logarithm of odds, up to a constant that all poses of a pair share
+  double agree = 0.0;    ///< share of the points that lie on what the other scan saw there
+  double crossed = 0.0;  ///< share of the points that beams of the other scan would have had to pass through
+};
+
+/// The answer of align() and robust_align(). `ref_from_query` takes the query scan to the frame of the reference.
 struct Alignment {
   AlignStatus status = AlignStatus::kNoShape;
-  std::string reason;                    ///< one line with the numbers behind `status`; empty when ok
-  Pose2 ref_from_query = kNoPose;        ///< NaN unless ok()
+  std::string reason;              ///< one line with the numbers behind `status`; empty when ok
+  Pose2 ref_from_query = kNoPose;  ///< NaN unless has_pose()
+
+  /// By the robust method only: the poses that were found, best first; the probability that the first is right; and
+  /// its covariance, in metres and radians, large in directions that the scans do not hold.
+  std::vector<RankedPose> ranked;
+  double probability = std::numeric_limits<double>::quiet_NaN();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN());
+
+  /// By the paper's method only.
   Pose2 shape_ref_from_query = kNoPose;  ///< the same before ICP, from shape alone
   Pose2 icp_ref_from_query = kNoPose;    ///< the same after ICP and before decoupled ICP
   double rotation_rad = 0.0;             ///< the rotation of the grid that won
@@ -53,6 +72,7 @@ struct Alignment {
   double decoupled_icp_s = 0.0;
 
   bool ok() const { return status == AlignStatus::kOk; }
+  bool has_pose() const { return ok() || status == AlignStatus::kAmbiguous || status == AlignStatus::kDegenerate; }
 };
 
 }  // namespace shapemap

@@ -30,14 +30,16 @@ struct PointToLineOptions {
 
 struct LineFit {
   Pose2 ref_from_query;
-  /// Of (x, y, theta) in the last iteration: sum of J^T J over the partners, without the variance of a residual.
+  /// About (x, y, theta), at the last iteration: sum of J^T J over the partners, for residuals of unit variance.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  double rms_m = 0.0;
   int partners = 0;
+  double rms_m = 0.0;    ///< of the partners' distances from their lines
+  double lever_m = 0.0;  ///< root mean square of the partners' distances from the robot
 };
 
-/// Moves the query so that its points lie on the lines through their partners in the reference (Chen and Medioni 1992;
-/// Censi 2008).
-LineFit fit_to_lines(const ScanView& reference, const ScanView& query, const Pose2& start, const PointToLineOptions& options);
+/// Moves the query so that its points lie on the lines through their partners in the reference (Chen and Medioni,
+/// "Object modelling by registration of multiple range images", 1992). Partners are sought within a gate that narrows.
+LineFit fit_to_lines(const ScanView& reference, const ScanView& query, const Pose2& start,
+                     const PointToLineOptions& options);
 
 }  // namespace shapemap

@@ -1,62 +1,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <vector>
-
-#include "shapemap/align/point_to_line.hpp"
-#include "shapemap/align/visibility.hpp"
+#include "shapemap/align/alignment.hpp"
+#include "shapemap/align/confidence.hpp"
+#include "shapemap/align/pose_hypothesis.hpp"
 #include "shapemap/core/options.hpp"
-#include "shapemap/match/translation_voting.hpp"
 
+/// Alignment of two scans with any heading and offset between them, which says how sure it is.
 namespace shapemap {
 
-struct HypothesisOptions {
-  int rotation_peaks = 8;
-  double all_rotations_below = 2.0;
-  double all_rotations_step_rad = 5 * kDegree;
-  int shape_segments = 2;
-  int refined = 20;
-  int kept = 5;
+struct ConfidenceOptions {
+  double sure_probability = 0.95;
+  double min_agree = 0.03;
+  double max_deviation_m = 0.50;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit(Field{"rotation-peaks", "rotations that bring most tangents together and are tried", 1, 360},
-          self.rotation_peaks);
-    visit(Field{"all-rotations-below", "when no pose scores as much, all rotations are tried", -100, 100},
-          self.all_rotations_below);
-    visit(Field{"all-rotations-step-deg", "step between them [deg]", 0.5, 180, kDegree}, self.all_rotations_step_rad);
-    visit(Field{"shape-segments", "longest segments of the LCS that put up a translation", 0, 1000},
-          self.shape_segments);
-    visit(Field{"refined-hypotheses", "poses that are refined", 1, 1000}, self.refined);
-    visit(Field{"kept-hypotheses", "distinct poses that are kept, best first", 1, 100}, self.kept);
+    visit(Field{"sure-probability", "an alignment less probable than this is called ambiguous", 0, 1},
+          self.sure_probability);
+    visit(Field{"min-agree", "one in which a smaller share of the points agrees is refused", 0, 1}, self.min_agree);
+    visit(Field{"max-deviation-m", "one whose position is held worse than this is called degenerate [m]", 0.01, 10},
+          self.max_deviation_m);
   }
 };
 
 struct RobustOptions {
-  VotingOptions voting;
-  HypothesisOptions hypotheses;
-  VisibilityOptions visibility;
-  PointToLineOptions line;
+  ViewOptions view;
+  HypothesisSearchOptions search;
+  ConfidenceOptions confidence;
 };
 
-/// A pose that the query scan may have, and how well the two scans then go together.
-struct PoseHypothesis {
-  Pose2 ref_from_query;
-  double score = 0.0;  ///< visibility_score()
-  Visibility visibility;
-  LineFit fit;
-};
+/// The pose of `query` in the frame of `reference`, from shape alone. Never throws for scans that do not match: see
+/// Alignment::status.
+Alignment robust_align(const ScanView& reference, const ScanView& query, const RobustOptions& options);
 
-/// Distinct poses that `query` may have in the frame of `reference`, any heading and offset, best first. Empty when one
-/// of them has no points.
-std::vector<PoseHypothesis> pose_hypotheses(const ScanView& reference, const ScanView& query,
-                                            const RobustOptions& options);
-
-/// Refines a pose and judges it.
-PoseHypothesis refined_hypothesis(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
-                                  const RobustOptions& options);
-
-/// The best of `hypotheses`, one for each place; at most `count`.
-std::vector<PoseHypothesis> best_distinct(std::vector<PoseHypothesis> hypotheses, int count);
+/// The verdict on `hypotheses`, best first, of which number `chosen` is taken; `margin` is what it is better by than
+/// any other place.
+Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chosen, double margin,
+                 const ConfidenceOptions& options);
 
 }  // namespace shapemap

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "shapemap/align/align.hpp"
+#include "shapemap/align/robust_align.hpp"
 #include "shapemap/core/options.hpp"
 #include "shapemap/scan/returns.hpp"
 #include "shapemap/shape/polyline_em.hpp"
@@ -9,15 +10,35 @@
 
 namespace shapemap {
 
-enum class Method { kPaper };
+enum class Method {
+  kRobust,  ///< any heading and offset, little overlap, and a probability with each alignment
+  kPaper,   ///< "Robot Mapping for Rescue Robots"
+};
 
 template <>
 struct EnumNames<Method> {
-  static constexpr std::array<std::string_view, 1> names{"paper"};
+  static constexpr std::array<std::string_view, 2> names{"robust", "paper"};
+};
+
+/// How the robust method chains its alignments.
+struct SmoothingOptions {
+  double companion_weight = 0.5;
+  double doubt_below = 0.3;
+  int more_references = 2;
+  double split_below = 0.0;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"companion-weight", "weight of how a pose goes with the scan before the last", 0, 10},
+          self.companion_weight);
+    visit(Field{"doubt-below", "a less probable alignment is helped by scans further back", 0, 1}, self.doubt_below);
+    visit(Field{"more-references", "so many of them", 0, 10}, self.more_references);
+    visit(Field{"split-below", "a less probable alignment splits the map instead", 0, 1}, self.split_below);
+  }
 };
 
 struct ChainOptions {
-  Method method = Method::kPaper;
+  Method method = Method::kRobust;
   int target_scans = 3;
   int threads = 1;
   int seed = 0;
@@ -25,9 +46,10 @@ struct ChainOptions {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit(Field{"method", "how scans are aligned"}, self.method);
-    visit(Field{"target-scans", "previous scans that make the target of an alignment", 1, 100}, self.target_scans);
+    visit(Field{"target-scans", "previous scans that make the target of the paper's method", 1, 100},
+          self.target_scans);
     visit(Field{"threads", "worker threads; the result does not depend on it", 1, 256}, self.threads);
-    visit(Field{"seed", "seed of everything random; the paper's method draws nothing", 0, 2147483647}, self.seed);
+    visit(Field{"seed", "seed of everything random; neither method draws anything", 0, 2147483647}, self.seed);
   }
 };
 
@@ -36,7 +58,9 @@ struct MappingOptions {
   ReturnOptions returns;
   PolylineOptions polylines;
   ShapeOptions shape;
-  AlignOptions align;
+  RobustOptions robust;
+  SmoothingOptions smoothing;
+  AlignOptions align;  ///< of the paper's method
   ChainOptions chain;
 
   /// Calls `visit(title, group)` for each group; `group` is a struct with `fields`.
@@ -45,14 +69,21 @@ struct MappingOptions {
     visit("Returns", self.returns);
     visit("Polylines", self.polylines);
     visit("Shape", self.shape);
-    visit("Histograms", self.align.histogram);
-    visit("Similarity", self.align.similarity);
-    visit("Rotations", self.align.rotation);
-    visit("Longest common subsequence", self.align.lcs);
-    visit("Filters", self.align.filters);
-    visit("Overlap", self.align.overlap);
-    visit("ICP", self.align.icp);
-    visit("Trust", self.align.trust);
+    visit("Robust method: views", self.robust.view);
+    visit("Robust method: translation votes", self.robust.search.voting);
+    visit("Robust method: hypotheses", self.robust.search.hypotheses);
+    visit("Robust method: visibility", self.robust.search.visibility);
+    visit("Robust method: refinement", self.robust.search.line);
+    visit("Robust method: confidence", self.robust.confidence);
+    visit("Robust method: chain", self.smoothing);
+    visit("Paper's method: histograms", self.align.histogram);
+    visit("Paper's method: similarity", self.align.similarity);
+    visit("Paper's method: rotations", self.align.rotation);
+    visit("Paper's method: longest common subsequence", self.align.lcs);
+    visit("Paper's method: filters", self.align.filters);
+    visit("Paper's method: overlap", self.align.overlap);
+    visit("Paper's method: ICP", self.align.icp);
+    visit("Paper's method: trust", self.align.trust);
     visit("Chain", self.chain);
   }
 };

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+
+#include "shapemap/align/pose_hypothesis.hpp"
+
+/// What an alignment is worth.
+namespace shapemap {
+
+/// Probability that `best` is right. `margin` is its score above that of the best other place.
+double match_probability(const PoseHypothesis& best, double margin);
+
+/// The margin that stands for "there is no other place".
+inline constexpr double kFullMargin = 20.0;
+
+/// Covariance of (x, y, theta) from the lines that hold the pose; a direction that none holds gets metres.
+Eigen::Matrix3d pose_covariance(const LineFit& fit);
+
+/// Standard deviation in the direction in which a position is held worst.
+double worst_deviation_m(const Eigen::Matrix3d& covariance);
+
+}  // namespace shapemap

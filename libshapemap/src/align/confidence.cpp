@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/align/confidence.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace shapemap {
+namespace {
+
+/// Spread of a point about the line that it should lie on; neighbouring points err alike, which makes them count less.
+constexpr double kResidual_m = 0.05;
+
+/// Tangents are only known to a few degrees: what a point seems to tell about sliding along its own line is noise.
+constexpr double kTangentNoise = 0.05;
+
+/// As far as a position can be off and still be near.
+constexpr double kUnknown_m = 10.0;
+
+}  // namespace
+
+double match_probability(const PoseHypothesis& best, double margin) {
+  constexpr double kNothing = 1e-9;
+  const double agree = best.visibility.agree / (best.visibility.total() + kNothing);
+  const double z = -1.0 + 0.7 * std::min(margin, kFullMargin) + 0.25 * std::log(std::max(margin, 0.05)) +
+                   0.45 * best.score + 0.5 * std::log(0.02 + agree);
+  return 1.0 / (1.0 + std::exp(-z));
+}
+
+Eigen::Matrix3d pose_covariance(const LineFit& fit) {
+  // Angles are scaled to the metres that they move a point by, so that all eigenvalues compare.
+  const double lever_m = std::max(fit.lever_m, 0.1);
+  const Eigen::Vector3d scale(1.0, 1.0, 1.0 / lever_m);
+  const Eigen::Matrix3d information = scale.asDiagonal() * fit.information * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
+  const double noise = kTangentNoise * kTangentNoise * fit.partners;
+  const double least = (kResidual_m / kUnknown_m) * (kResidual_m / kUnknown_m);
+  const Eigen::Vector3d variances =
+      kResidual_m * kResidual_m * (eigen.eigenvalues().array() - noise).max(least).inverse().matrix();
+  const Eigen::Matrix3d scaled = eigen.eigenvectors() * variances.asDiagonal() * eigen.eigenvectors().transpose();
+  return scale.asDiagonal() * scaled * scale.asDiagonal();
+}
+
+double worst_deviation_m(const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(Eigen::Matrix2d(covariance.topLeftCorner<2, 2>()));
+  return std::sqrt(std::max(0.0, eigen.eigenvalues().maxCoeff()));
+}
+
+}  // namespace shapemap

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace shapemap {
+
+/// A chain of choices: each link takes one of its alternatives, and neighbouring links may go together well or badly.
+struct ChoiceChain {
+  std::vector<std::vector<double>> scores;              ///< [link][alternative]; no link is without alternatives
+  std::vector<std::vector<std::vector<double>>> bonus;  ///< [link][alternative][alternative of the next link]
+};
+
+struct Choice {
+  std::size_t alternative = 0;
+  double margin = 0.0;  ///< what the best chain with this alternative is better by than the best without it
+};
+
+/// The chain with the largest sum (Viterbi 1967), and how much each of its choices matters. `full_margin` is the margin
+/// of a link with one alternative only.
+std::vector<Choice> best_choices(const ChoiceChain& chain, double full_margin);
+
+}  // namespace shapemap
