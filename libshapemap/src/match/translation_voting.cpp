@@ -102,7 +102,8 @@ TranslationVoting::Votes TranslationVoting::blurred(const Votes& votes) const {
   Votes rows(votes.size(), 0.0F);
   for (std::size_t i = 1; i + 1 < votes.size(); ++i) rows[i] = votes[i - 1] + 2.0F * votes[i] + votes[i + 1];
   Votes sums(votes.size(), 0.0F);
-  for (std::size_t i = width_; i + width_ < votes.size(); ++i) sums[i] = rows[i - width_] + 2.0F * rows[i] + rows[i + width_];
+  for (std::size_t i = width_; i + width_ < votes.size(); ++i)
+    sums[i] = rows[i - width_] + 2.0F * rows[i] + rows[i + width_];
   return sums;
 }
 

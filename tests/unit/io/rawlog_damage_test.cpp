@@ -18,7 +18,6 @@ constexpr long kMaxGrowth_KiB = 1024 * 1024;  // AddressSanitizer keeps what is 
 constexpr long kMaxGrowth_KiB = 64 * 1024;
 #endif
 
-
 using test::input_error;
 using test::make_scan;
 using test::TempFolder;

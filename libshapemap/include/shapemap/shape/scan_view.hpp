@@ -17,9 +17,9 @@ struct ViewOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit(Field{"view-max-points", "shape points of a scan that are compared, spread evenly over its surfaces", 20,
-                5000},
-          self.max_points);
+    visit(
+        Field{"view-max-points", "shape points of a scan that are compared, spread evenly over its surfaces", 20, 5000},
+        self.max_points);
   }
 };
 

@@ -34,8 +34,7 @@ struct ShapeOptions {
     visit(Field{"shape-points", "points that carry the shape"}, self.points);
     visit(Field{"shape-spacing-m", "arc length between resampled points [m]", 0.005, 1}, self.spacing_m);
     visit(Field{"shape-min-points", "a scan with fewer shape points is not aligned", 3, 100000}, self.min_points);
-    visit(Field{"shape-max-points", "of a scan with more points, only every second, third, ... is used", 100,
-                1000000},
+    visit(Field{"shape-max-points", "of a scan with more points, only every second, third, ... is used", 100, 1000000},
           self.max_points);
   }
 };
