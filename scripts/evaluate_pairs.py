@@ -41,6 +41,7 @@ EXAMPLE = """columns:
   refined from reference  share that is right when the refinement starts from the reference pose: a ceiling
   search, score, no pose  failures: the true pose is not among the hypotheses; it is, but not the first; it is the
                           first, but was refused, or the program crashed
+  reference would win     of the failures by search, those in which the reference pose scores higher than the one found
   reference in doubt      of the failures, those within 0.5 m and 25 degrees whose pose scores higher than the reference
                           pose, as it is and refined, by --doubt-margin
 
@@ -125,7 +126,15 @@ def plain(value: Any) -> Any:
 
 
 def as_json(evaluation: Evaluation, arguments: argparse.Namespace) -> str:
-    pairs = [{**plain(pair), "is_right": pair.is_right, "failure": pair.failure or None} for pair in evaluation.pairs]
+    pairs = [
+        {
+            **plain(pair),
+            "is_right": pair.is_right,
+            "failure": pair.failure or None,
+            "reference_would_win": pair.reference_would_win,
+        }
+        for pair in evaluation.pairs
+    ]
     content = {
         "options": plain(vars(arguments)),
         "logs": [{"name": log.name, "num_positions": len(log)} for log in evaluation.logs],

@@ -65,6 +65,12 @@ class PairOutcome:
             return "no pose"
         return "search" if self.rank < 0 else "score"
 
+    @property
+    def reference_would_win(self) -> bool:
+        """Failed by search alone: had the reference pose been among the hypotheses, it would have been the first."""
+        known = [score for score in (self.given_score, self.refined_score) if score is not None]
+        return self.failure == "search" and bool(known) and (self.found_score is None or max(known) > self.found_score)
+
 
 @dataclass(frozen=True)
 class CrossOutcome:

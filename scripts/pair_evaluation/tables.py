@@ -56,6 +56,7 @@ class SuccessRow:
     median_m: float
     median_deg: float
     failures: dict[str, int]
+    num_would_win: int
     num_in_doubt: int
 
 
@@ -78,6 +79,7 @@ def success_row(name: str, pairs: Sequence[PairOutcome]) -> SuccessRow:
         float(median_m),
         float(median_deg),
         {kind: sum(pair.failure == kind for pair in pairs) for kind in FAILURES},
+        sum(pair.reference_would_win for pair in pairs),
         sum(pair.in_doubt for pair in pairs),
     )
 
@@ -131,14 +133,15 @@ def table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
 
 def success_markdown(title: str, rows: Sequence[SuccessRow]) -> str:
     head = [title, "pairs", "right (95 % interval)", "mean of logs", "median error"]
-    head += ["refined from reference", "mean of logs", *FAILURES, "reference in doubt"]
+    head += ["refined from reference", "mean of logs", *FAILURES, "reference would win", "reference in doubt"]
     return table(
         head,
         [
             [
                 *[row.name, row.right.total, row.right, percent(row.log_mean)],
                 "-" if np.isnan(row.median_m) else f"{100 * row.median_m:.1f} cm, {row.median_deg:.2f} deg",
-                *[row.ceiling, percent(row.ceiling_log_mean), *row.failures.values(), row.num_in_doubt],
+                *[row.ceiling, percent(row.ceiling_log_mean), *row.failures.values()],
+                *[row.num_would_win, row.num_in_doubt],
             ]
             for row in rows
         ],
