@@ -42,8 +42,8 @@ EXAMPLE = """columns:
   search, score, no pose  failures: the true pose is not among the hypotheses; it is, but not the first; it is the
                           first, but was refused, or the program crashed
   reference would win     of the failures by search, those in which the reference pose scores higher than the one found
-  reference in doubt      of the failures, those within 0.5 m and 25 degrees whose pose scores higher than the reference
-                          pose, as it is and refined, by --doubt-margin
+  reference in doubt      of the failures, those within 0.5 m and 25 degrees whose pose scores higher by --doubt-margin
+                          than the reference pose, as it is and, unless that takes it away, refined
 
 example:
   SHAPEMAP_DATASETS=logs scripts/evaluate_pairs.py carmen/intel-corrected.log.gz carmen/orebro-corrected.log.gz \\

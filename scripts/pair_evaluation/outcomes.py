@@ -41,6 +41,7 @@ class PairOutcome:
     found_score: float | None = None
     given_score: float | None = None
     refined_score: float | None = None
+    reference_score: float | None = None  # the better of the two; a refined pose that is not right does not count
     error_m: float = float("inf")
     error_deg: float = float("inf")
     rank: int = -1
@@ -68,8 +69,9 @@ class PairOutcome:
     @property
     def reference_would_win(self) -> bool:
         """Failed by search alone: had the reference pose been among the hypotheses, it would have been the first."""
-        known = [score for score in (self.given_score, self.refined_score) if score is not None]
-        return self.failure == "search" and bool(known) and (self.found_score is None or max(known) > self.found_score)
+        if self.failure != "search" or self.reference_score is None:
+            return False
+        return self.found_score is None or self.reference_score > self.found_score
 
 
 @dataclass(frozen=True)
@@ -111,6 +113,10 @@ def is_right(pose: Any, truth: Array) -> bool:
     return error_m < MAX_ERROR_M and error_deg < MAX_ERROR_DEG
 
 
+def reference_score_of(given: Mapping[str, Any] | None, refined: Mapping[str, Any] | None) -> float | None:
+    return max((float(pose["score"]) for pose in (given, refined) if pose), default=None)
+
+
 def judge(log: ReferenceLog, reference: int, query: int, answer: Mapping[str, Any], doubt_margin: float) -> PairOutcome:
     """The outcome of one line of the program's answer."""
     if (answer["reference"], answer["query"]) != (reference, query):
@@ -120,9 +126,12 @@ def judge(log: ReferenceLog, reference: int, query: int, answer: Mapping[str, An
     best = hypotheses[0] if hypotheses else None
     error_m, error_deg = pose_error(np.array(best["pose"]), truth) if best else (float("inf"), float("inf"))
     right = [is_right(hypothesis["pose"], truth) for hypothesis in hypotheses]
+    refined_is_right = bool(refined) and is_right(refined["pose"], truth)
+    reference_score = reference_score_of(given, refined if refined_is_right else None)
     doubt = False
-    if best and given and refined and not right[0] and error_m < DOUBT_MAX_M and error_deg < DOUBT_MAX_DEG:
-        doubt = best["score"] > max(given["score"], refined["score"]) + doubt_margin
+    if best and reference_score is not None and not right[0]:
+        near = error_m < DOUBT_MAX_M and error_deg < DOUBT_MAX_DEG
+        doubt = near and best["score"] > reference_score + doubt_margin
     return PairOutcome(
         **about_pair(log, reference, query),
         status=answer["status"],
@@ -135,7 +144,8 @@ def judge(log: ReferenceLog, reference: int, query: int, answer: Mapping[str, An
         error_m=error_m,
         error_deg=error_deg,
         rank=right.index(True) if any(right) else -1,
-        refined_is_right=bool(refined) and is_right(refined["pose"], truth),
+        reference_score=reference_score,
+        refined_is_right=refined_is_right,
         in_doubt=doubt,
     )
 

@@ -151,6 +151,9 @@ def test_the_reference_is_in_doubt_when_a_better_pose_is_near_it(log: ReferenceL
     assert not in_doubt(0.3, 3.5), "scores are 5 against 2"
     assert not in_doubt(0.6, 1.0)
     assert not in_doubt(0.1, 1.0), "no failure"
+    assert not in_doubt(0.3, 3.1)
+    drifting = answer(log, [0.3], refined_offset=0.3)
+    assert judge(log, 0, 1, drifting, 3.1).in_doubt, "refined to the pose that was found: the other one has 1.5"
 
 
 def test_a_search_that_missed_a_better_reference_is_told_from_one_that_would_not_have_helped(log: ReferenceLog) -> None:
