@@ -22,11 +22,6 @@ constexpr double kScorePerResidual_m = 56.0;
 
 bool better(const PoseHypothesis& a, const PoseHypothesis& b) { return a.score > b.score; }
 
-bool same_place(const Pose2& a, const Pose2& b) {
-  return (a.translation() - b.translation()).norm() < kSamePlace_m &&
-         angle_between(a.theta_rad, b.theta_rad) < kSameHeading_rad;
-}
-
 /// The two scans of an alignment and what their hypotheses come from.
 class Search {
  public:
@@ -106,6 +101,11 @@ PoseHypothesis refined_hypothesis(const ScanView& reference, const ScanView& que
   pose.visibility = visibility(reference, query, pose.ref_from_query, options.visibility);
   pose.score = visibility_score(pose.visibility) - kScorePerResidual_m * pose.fit.rms_m;
   return pose;
+}
+
+bool same_place(const Pose2& a, const Pose2& b) {
+  return (a.translation() - b.translation()).norm() < kSamePlace_m &&
+         angle_between(a.theta_rad, b.theta_rad) < kSameHeading_rad;
 }
 
 std::vector<PoseHypothesis> best_distinct(std::vector<PoseHypothesis> hypotheses, int count) {
