@@ -18,6 +18,7 @@ Check = Callable[[list[PairOutcome]], list[str]]
 ALONG, ACROSS = (1.0, 0.0), (0.0, 1.0)
 FREE_M = 0.5  # a direction that nothing holds is not to be called better known than this
 HELD_M = 0.15  # and one that walls hold not worse
+DOUBT = 0.75  # of many places that look alike none is more probable; half would be just
 
 
 @dataclass(frozen=True)
@@ -69,11 +70,15 @@ def check_corridor(outcomes: list[PairOutcome]) -> list[str]:
 
 
 def check_round_room(outcomes: list[PairOutcome]) -> list[str]:
-    return false_certainties(outcomes) + [
-        f"position {p.index} is called {p.status}, its heading known to {p.deviation_deg:.1f} deg"
-        for p in outcomes
-        if p.status not in ("degenerate", "ambiguous") and not p.deviation_deg > 10.0
-    ]
+    broken = false_certainties(outcomes)
+    for p in outcomes:
+        if p.deviation_deg > 10.0:
+            continue
+        if p.status not in ("degenerate", "ambiguous"):
+            broken.append(f"position {p.index} is called {p.status}, its heading known to {p.deviation_deg:.1f} deg")
+        elif p.probability > DOUBT:
+            broken.append(f"position {p.index} has a heading like any other, and it is {p.probability:.3f} probable")
+    return broken
 
 
 def corridor(fov_deg: float, turn_deg: float) -> Callable[[int], Simulation]:
@@ -155,7 +160,10 @@ CORRIDOR_STATEMENT = (
     f"degenerate or ambiguous, every pair; along the corridor not said to be known to {FREE_M:g} m; across it right, "
     f"and said to be known to {HELD_M:g} m"
 )
-ROUND_STATEMENT = "ambiguous or degenerate, every pair, or its heading not said to be known to 10 deg"
+ROUND_STATEMENT = (
+    f"ambiguous or degenerate, every pair, and at most {DOUBT:g} probable, "
+    "unless its heading is not said to be known to 10 deg"
+)
 LASERS = [
     (100.0, 0.25, 20.0, 30.0),
     (100.0, 2.0, 8.0, 30.0),

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .pairs import pose_from
 from .poses import Array, compose, inverse, rotate
 from .simulation import Simulation, consecutive_overlaps
 
@@ -19,8 +20,8 @@ SURE = 0.95  # the mapper's own threshold for `ok`
 
 @dataclass(frozen=True)
 class PairOutcome:
-    """Position `index` in the frame of the one before it. The estimate is the trajectory's and NaN where either of the
-    two has no place; probability NaN and covariance None where the report does not say them."""
+    """Position `index` in the frame of the one before it. The estimate is that of the report, also of pairs outside of
+    the map, and NaN where there is none; probability NaN and covariance None where the report does not say them."""
 
     index: int
     overlap: float
@@ -95,6 +96,12 @@ def covariance_from(value: Any) -> Array | None:
     return numbers.reshape(3, 3) if numbers.size == 9 and np.isfinite(numbers).all() else None
 
 
+def estimated_pose(alignment: Mapping[str, Any], from_path: Array) -> Array:
+    """`[3]`: that of the report or, where it has none although the pair is in the map, that of the trajectory."""
+    fields = alignment.get("ref_from_query")
+    return from_path if fields is None else pose_from(fields)
+
+
 def pair_outcomes(simulation: Simulation, report: Mapping[str, Any], trajectory: str) -> list[PairOutcome]:
     """One outcome for each consecutive pair of the run."""
     placed, entries = parse_tum(trajectory), {entry["index"]: entry for entry in report["positions"]}
@@ -114,7 +121,7 @@ def pair_outcomes(simulation: Simulation, report: Mapping[str, Any], trajectory:
                 reason=entry.get("reason", "not in the report"),
                 probability=float("nan") if probability is None else float(probability),
                 covariance=covariance_from(alignment.get("covariance")),
-                ref_from_query=compose(inverse(poses[k - 1]), poses[k]),
+                ref_from_query=estimated_pose(alignment, compose(inverse(poses[k - 1]), poses[k])),
                 true_ref_from_query=compose(inverse(truth[k - 1]), truth[k]),
                 ref_heading_rad=float(truth[k - 1][2]),
             )
