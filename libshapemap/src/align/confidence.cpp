@@ -8,8 +8,9 @@
 namespace shapemap {
 namespace {
 
-/// Spread of a point about the line that it should lie on; neighbouring points err alike, which makes them count less.
-constexpr double kResidual_m = 0.05;
+/// Spread of a point about its line, larger than it is: neighbouring points err alike, which makes many count as few.
+/// Set so that errors on simulated arenas agree with the covariance in the median.
+constexpr double kResidual_m = 0.12;
 
 /// Tangents are only known to a few degrees: what a point seems to tell about sliding along its own line is noise.
 constexpr double kTangentNoise = 0.05;
@@ -20,11 +21,14 @@ constexpr double kUnknown_m = 10.0;
 }  // namespace
 
 double match_probability(const PoseHypothesis& best, double margin) {
-  constexpr double kNothing = 1e-9;
-  const double agree = best.visibility.agree / (best.visibility.total() + kNothing);
-  const double z = -1.0 + 0.7 * std::min(margin, kFullMargin) + 0.25 * std::log(std::max(margin, 0.05)) +
-                   0.45 * best.score + 0.5 * std::log(0.02 + agree);
-  return 1.0 / (1.0 + std::exp(-z));
+  constexpr double kLeastMargin = 0.05;  // its logarithm stays finite
+  constexpr double kLeastAgree = 0.02;
+  const double agree = best.visibility.agree / std::max(best.visibility.total(), 1e-9);
+  const double held = std::clamp(margin, kLeastMargin, kFullMargin);
+  // Logistic regression on pairs of scans with known poses, and on pairs of different places: scripts/fit_scores.py.
+  const double log_odds =
+      -0.34 + 0.61 * held + 0.28 * std::log(held) + 0.58 * best.score + 1.07 * std::log(kLeastAgree + agree);
+  return 1.0 / (1.0 + std::exp(-log_odds));
 }
 
 Eigen::Matrix3d pose_covariance(const LineFit& fit) {

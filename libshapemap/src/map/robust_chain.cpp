@@ -172,16 +172,20 @@ class RobustChain {
     Pose2 map_from_robot;
     for (std::size_t i = 0; i < scans_.size(); ++i) {
       PositionResult& outcome = result_.positions[scans_[i].position_index];
-      outcome.starts_fragment = i == 0;
+      outcome.starts_fragment = true;
       if (i > 0) {
         const Choice& choice = choices[i - 1];
-        outcome.alignment = judged(links_[i - 1], choice.alternative, choice.margin, options_.robust.confidence);
-        outcome.starts_fragment =
-            !outcome.alignment.has_pose() || outcome.alignment.probability < options_.smoothing.split_below;
+        const std::vector<PoseHypothesis>& link = links_[i - 1];
+        outcome.alignment = judged(link, choice.alternative, choice.margin, options_.robust.confidence);
         outcome.reason = outcome.alignment.reason;
+        outcome.starts_fragment = link.empty() || outcome.alignment.probability < options_.smoothing.split_below;
+        // A pose that is likely to be wrong keeps the map in one piece, and is reported.
+        if (!link.empty()) map_from_robot = map_from_robot * link[choice.alternative].ref_from_query;
       }
-      map_from_robot = outcome.starts_fragment ? Pose2{} : map_from_robot * outcome.alignment.ref_from_query;
-      if (outcome.starts_fragment) result_.fragments.emplace_back();
+      if (outcome.starts_fragment) {
+        map_from_robot = {};
+        result_.fragments.emplace_back();
+      }
       outcome.fragment = static_cast<int>(result_.fragments.size()) - 1;
 
       PlacedPosition placed;

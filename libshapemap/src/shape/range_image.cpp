@@ -19,7 +19,7 @@ double first_bearing_rad(const SubScan& sub_scan) {
   const double first_rad = sub_scan.beam_angle_rad(0);
   const double last_rad = sub_scan.beam_angle_rad(sub_scan.ranges_m.size() - 1);
   const bool upside_down = is_upside_down(sub_scan.robot_from_sensor);  // its angles run clockwise, seen from above
-  return upside_down ? std::min(-first_rad, -last_rad) : std::min(first_rad, last_rad);
+  return wrap_angle(upside_down ? std::min(-first_rad, -last_rad) : std::min(first_rad, last_rad));
 }
 
 Point2 normal_at(const SubScanShape& shape, std::size_t point, const Point2& to_sensor) {
@@ -34,10 +34,12 @@ Point2 normal_at(const SubScanShape& shape, std::size_t point, const Point2& to_
 }  // namespace
 
 int RangeImage::beam_at(double bearing_rad) const {
-  const double beams_in_turn = 2.0 * kPi / step_rad;
-  const double beam = (bearing_rad - first_bearing_rad) / step_rad + 0.5;
-  const double in_turn = beam - beams_in_turn * std::floor(beam / beams_in_turn);
-  return in_turn < static_cast<double>(beams.size()) ? static_cast<int>(in_turn) : -1;
+  const double per_rad = 1.0 / step_rad;
+  const double beams_in_turn = 2.0 * kPi * per_rad;
+  double beam = (bearing_rad - first_bearing_rad) * per_rad + 0.5;
+  while (beam < 0.0) beam += beams_in_turn;
+  while (beam >= beams_in_turn) beam -= beams_in_turn;
+  return beam < static_cast<double>(beams.size()) ? static_cast<int>(beam) : -1;
 }
 
 RangeImage range_image(const SubScan& sub_scan, const SubScanShape& shape) {
