@@ -25,7 +25,7 @@ TINY_BEAMS = 682
 POSE_FIELDS = 3
 EXAMPLE = """example:
   scripts/convert_logs.py lab.dat.gz lab.nist
-  scripts/convert_logs.py --angle-step-deg 0.5 vacuum.txt.gz vacuum.nist
+  scripts/convert_logs.py --angle-step-deg=-0.5 vacuum.txt.gz vacuum.nist
   scripts/convert_logs.py --topic /scan walk.bag walk.nist"""
 
 
@@ -166,7 +166,7 @@ def main(argv: list[str] | None = None) -> int:
     except (UnknownLogError, OSError) as error:
         print(f"convert_logs.py: {error}", file=sys.stderr)
         return 1
-    returned = np.isfinite(log.ranges).mean()
+    returned = ((log.ranges >= log.min_range_m) & (log.ranges < log.sensor.max_range_m)).mean()
     print(f"{len(log.ranges)} scans of {log.ranges.shape[1]} beams, {100 * returned:.0f} % of them returned")
     if others:
         print(f"left out {others} lines that are not like the others", file=sys.stderr)
