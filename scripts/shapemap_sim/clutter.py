@@ -4,7 +4,7 @@ that leave the route free and touch nothing else."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -121,13 +121,20 @@ def stands_apart(points: Array, others: Array, gap_m: float) -> bool:
     return not near.any() or bool(squared_distances(points, others[near]).min() >= gap_m**2)
 
 
-def scatter(num_objects: int, world: World, clearance_m: float, rng: np.random.Generator, gap_m: float = 0.06) -> None:
+def scatter(
+    num_objects: int,
+    world: World,
+    clearance_m: float,
+    rng: np.random.Generator,
+    gap_m: float = 0.06,
+    makers: Sequence[tuple[Maker, float]] = MAKERS,
+) -> None:
     """Put up to `num_objects` random things between what stands there; one that finds no room beside the route in 20
-    tries is left out."""
+    tries is left out. `makers` come with their shares."""
     taken = outline_points(world.faces, world.arcs)
-    shares = np.array([share for _, share in MAKERS])
+    shares = np.array([share for _, share in makers])
     for _ in range(num_objects):
-        maker = MAKERS[int(rng.choice(len(MAKERS), p=shares / shares.sum()))][0]
+        maker = makers[int(rng.choice(len(makers), p=shares / shares.sum()))][0]
         for _ in range(20):
             centre = rng.uniform([0.0, 0.0], world.size_m)
             faces, arcs = maker(centre, rng.uniform(-np.pi, np.pi), rng)

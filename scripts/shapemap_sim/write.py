@@ -35,12 +35,12 @@ def sensor_line(sensor: SensorOptions) -> str:
     )
 
 
-def nist_text(simulation: Simulation) -> str:
+def nist_text(simulation: Simulation, title: str = "simulated rescue arena") -> str:
     """The run as a scan log, version 1."""
     run = simulation.drive
     lines = [
         "shapemap-scans 1",
-        f"# simulated rescue arena, seed {simulation.options.seed}",
+        f"# {title}, seed {simulation.options.seed}",
         "units m deg",
         sensor_line(simulation.options.sensor),
     ]
