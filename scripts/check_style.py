@@ -39,7 +39,11 @@ CONFINEMENTS = (
     Confinement("MRPT", "mrpt/*", ("libshapemap/src/io/rawlog*.cpp", "libshapemap/src/io/grid_map.cpp")),
     Confinement("OpenCV", "opencv2/*", ("libshapemap/src/io/map_image.cpp",)),
     Confinement("CGAL", "CGAL/*", ("libshapemap/src/shape/simplify.cpp",)),
-    Confinement("nlohmann-json", "nlohmann/*", ("libshapemap/src/io/report.cpp", "apps/*")),
+    Confinement(
+        "nlohmann-json",
+        "nlohmann/*",
+        ("libshapemap/src/io/report.cpp", "libshapemap/src/io/pairs_json.cpp", "apps/*"),
+    ),
     Confinement("nanoflann", "nanoflann*", ("libshapemap/src/*.cpp",), max_files=1),
 )
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "option_table.hpp"
 #include "settings.hpp"
 
 /// What was typed, checked as far as that can be done without looking at the log.
@@ -41,10 +42,28 @@ struct ConvertArguments {
   LogReadOptions reading;
 };
 
+struct AlignArguments {
+  std::string log_path;
+  std::string other_path;  ///< of the queries; empty: `log_path`
+  LogFormat format = LogFormat::kAuto;
+  int gap = 0;  ///< 0: `pairs_path` says which pairs
+  std::string pairs_path;
+  std::string out_path;
+  bool force = false;
+  bool timings = false;
+  bool dump_config = false;  ///< print the options and do nothing else
+  bool quiet = false;
+  MapSettings settings;
+};
+
 /// `arguments` are those after the program's name, or after the command's. Nothing is returned when help or the
 /// version was asked for and printed. All throw ConfigError for wrong usage.
 std::optional<MapArguments> parse_map_arguments(const std::vector<std::string>& arguments);
 std::optional<InfoArguments> parse_info_arguments(const std::vector<std::string>& arguments);
 std::optional<ConvertArguments> parse_convert_arguments(const std::vector<std::string>& arguments);
+std::optional<AlignArguments> parse_align_arguments(const std::vector<std::string>& arguments);
+
+/// The options of `settings` that aligning pairs looks at. The table must not outlive `settings`.
+OptionTable align_option_table(MapSettings& settings);
 
 }  // namespace shapemap::cli

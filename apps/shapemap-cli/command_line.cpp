@@ -64,6 +64,12 @@ void TableFlags::apply() const {
   }
 }
 
+void FormatText::add(CLI::App& app, const char* name, const std::string& help) {
+  app.add_option(name, text, help + " (" + spellings_text<LogFormat>() + ")")->option_text("FORMAT");
+}
+
+LogFormat FormatText::format(const char* name) const { return parse_choice<LogFormat>(Field{name, ""}, text); }
+
 bool parse(CLI::App& app, const std::vector<std::string>& arguments) {
   std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // the order CLI11 wants
   try {
@@ -81,7 +87,8 @@ bool parse(CLI::App& app, const std::vector<std::string>& arguments) {
 }
 
 std::string exit_code_help() {
-  return "Exit codes: 0 all positions placed; 1 unexpected failure; 2 wrong usage; 3 unreadable or malformed input,\n"
+  return "Exit codes: 0 done, a map has all positions; 1 unexpected failure; 2 wrong usage; 3 unreadable or malformed "
+         "input,\n"
          "nothing written; 4 map written, some positions not placed; 5 cannot write; 130 interrupted.";
 }
 

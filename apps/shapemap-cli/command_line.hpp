@@ -25,6 +25,14 @@ class TableFlags {
   std::vector<Flag> flags_;
 };
 
+/// Holds a format option's text until it is looked at.
+struct FormatText {
+  std::string text = "auto";
+
+  void add(CLI::App& app, const char* name, const std::string& help);
+  LogFormat format(const char* name) const;
+};
+
 /// False when help or the version was asked for; it has been printed then. Throws ConfigError for wrong usage.
 bool parse(CLI::App& app, const std::vector<std::string>& arguments);
 

@@ -15,6 +15,10 @@ int run_command_line(const std::vector<std::string>& typed) {
     const auto arguments = parse_convert_arguments({typed.begin() + 1, typed.end()});
     return arguments ? run_convert(*arguments) : kExitOk;
   }
+  if (command == "align") {
+    const auto arguments = parse_align_arguments({typed.begin() + 1, typed.end()});
+    return arguments ? run_align(*arguments) : kExitOk;
+  }
   const auto arguments = parse_map_arguments(typed);
   return arguments ? run_map(*arguments) : kExitOk;
 }

@@ -5,7 +5,7 @@ namespace shapemap::cli {
 
 /// What the program tells scripts; documented in docs/cli.md and in the help.
 enum ExitCode : int {
-  kExitOk = 0,            ///< all positions placed
+  kExitOk = 0,            ///< done; of a map: all positions placed
   kExitUnexpected = 1,    ///< a fault of the program, or no memory
   kExitUsage = 2,         ///< wrong usage or options
   kExitInput = 3,         ///< unreadable or malformed input; nothing written

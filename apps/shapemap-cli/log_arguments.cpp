@@ -10,16 +10,6 @@
 namespace shapemap::cli {
 namespace {
 
-/// Holds a format option's text until it is looked at.
-struct FormatText {
-  std::string text = "auto";
-
-  void add(CLI::App& app, const char* name, const std::string& help) {
-    app.add_option(name, text, help + " (" + spellings_text<LogFormat>() + ")")->option_text("FORMAT");
-  }
-  LogFormat format(const char* name) const { return parse_choice<LogFormat>(Field{name, ""}, text); }
-};
-
 bool ends_in(const std::string& text, const std::string& ending) {
   return text.size() > ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }

@@ -18,20 +18,21 @@ std::string duration_text(double seconds) {
 
 }  // namespace
 
-std::string progress_line(std::size_t done, std::size_t total, double elapsed_s, std::size_t width) {
+std::string progress_line(std::size_t done, std::size_t total, const char* what, double elapsed_s, std::size_t width) {
   const std::size_t filled = total > 0 ? width * done / total : 0;
   std::string line = "[" + std::string(filled, '=') + std::string(width - filled, ' ') + "] " + std::to_string(done) +
                      "/" + std::to_string(total);
   if (done > 0 && elapsed_s > 0.0) {
     const double rate = static_cast<double>(done) / elapsed_s;
-    char text[48];
-    std::snprintf(text, sizeof text, "  %.1f positions/s  ETA ", rate);
-    line += text + duration_text(static_cast<double>(total - done) / rate);
+    char text[32];
+    std::snprintf(text, sizeof text, "  %.1f ", rate);
+    line += std::string(text) + what + "/s  ETA " + duration_text(static_cast<double>(total - done) / rate);
   }
   return line;
 }
 
-ProgressBar::ProgressBar(bool enabled) : enabled_(enabled && ::isatty(STDERR_FILENO) == 1) {}
+ProgressBar::ProgressBar(bool enabled, const char* what)
+    : enabled_(enabled && ::isatty(STDERR_FILENO) == 1), what_(what) {}
 
 void ProgressBar::update(std::size_t done, std::size_t total) {
   if (!enabled_) return;
@@ -40,7 +41,7 @@ void ProgressBar::update(std::size_t done, std::size_t total) {
   last_drawn_ = now;
   visible_ = true;
   const double elapsed_s = std::chrono::duration<double>(now - start_).count();
-  std::fprintf(stderr, "\r\033[K%s", progress_line(done, total, elapsed_s, 30).c_str());
+  std::fprintf(stderr, "\r\033[K%s", progress_line(done, total, what_, elapsed_s, 30).c_str());
   std::fflush(stderr);
 }
 

@@ -13,7 +13,7 @@ namespace shapemap::cli {
 /// Feeds the progress bar, keeps warnings for later, and stops the run on Ctrl-C.
 class ConsoleObserver : public RunObserver {
  public:
-  explicit ConsoleObserver(bool show_progress) : progress_(show_progress) {}
+  explicit ConsoleObserver(bool show_progress, const char* what = "positions") : progress_(show_progress, what) {}
 
   void on_progress(std::size_t done, std::size_t total) override { progress_.update(done, total); }
   void on_warning(std::string_view message) override { warnings_.emplace_back(message); }

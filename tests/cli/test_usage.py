@@ -11,7 +11,7 @@ def options_of(text):
     return tomllib.loads(text)
 
 
-@pytest.mark.parametrize("command", [[], ["info"], ["convert"]])
+@pytest.mark.parametrize("command", [[], ["info"], ["convert"], ["align"]])
 def test_help_has_groups_examples_and_exit_codes(run, command):
     result = run(*command, "--help")
     assert result.returncode == 0

@@ -15,6 +15,9 @@ constexpr double kStill_rad = 1e-3;
 /// Partners farther apart than this share of the gate count less and less.
 constexpr double kTrustedShareOfGate = 0.3;
 
+/// Fewer hold no pose.
+constexpr int kLeastPartners = 3;
+
 /// Normal equations of one iteration.
 struct LineSystem {
   Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
@@ -50,6 +53,14 @@ LineSystem line_system(const ScanView& reference, const ScanView& query, const P
   return system;
 }
 
+void note_fit(const LineSystem& system, LineFit& fit) {
+  fit.information = system.a;
+  fit.partners = system.partners;
+  if (fit.partners < kLeastPartners) return;
+  fit.rms_m = std::sqrt(system.squares_m2 / fit.partners);
+  fit.lever_m = std::sqrt(system.lever_squares_m2 / fit.partners);
+}
+
 }  // namespace
 
 LineFit fit_to_lines(const ScanView& reference, const ScanView& query, const Pose2& start,
@@ -60,11 +71,8 @@ LineFit fit_to_lines(const ScanView& reference, const ScanView& query, const Pos
   double gate_m = std::max(options.first_gate_m, options.last_gate_m);
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     const LineSystem system = line_system(reference, query, fit.ref_from_query, gate_m, cos_gate);
-    fit.information = system.a;
-    fit.partners = system.partners;
-    if (fit.partners < 3) break;
-    fit.rms_m = std::sqrt(system.squares_m2 / fit.partners);
-    fit.lever_m = std::sqrt(system.lever_squares_m2 / fit.partners);
+    note_fit(system, fit);
+    if (fit.partners < kLeastPartners) break;
 
     const Eigen::Matrix3d held = options.stiffness * fit.partners * Eigen::Matrix3d::Identity();
     const Eigen::Vector3d step = (system.a + held + 1e-6 * Eigen::Matrix3d::Identity()).ldlt().solve(system.b);
@@ -75,6 +83,14 @@ LineFit fit_to_lines(const ScanView& reference, const ScanView& query, const Pos
     if (still && gate_m <= options.last_gate_m) break;
     gate_m = std::max(options.last_gate_m, (still ? 0.5 : 0.8) * gate_m);
   }
+  return fit;
+}
+
+LineFit fit_at(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
+               const PointToLineOptions& options) {
+  LineFit fit;
+  fit.ref_from_query = ref_from_query;
+  note_fit(line_system(reference, query, ref_from_query, options.last_gate_m, std::cos(options.tangent_gate_rad)), fit);
   return fit;
 }
 

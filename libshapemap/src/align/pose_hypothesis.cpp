@@ -22,6 +22,16 @@ constexpr double kScorePerResidual_m = 56.0;
 
 bool better(const PoseHypothesis& a, const PoseHypothesis& b) { return a.score > b.score; }
 
+PoseHypothesis judged_fit(const ScanView& reference, const ScanView& query, const LineFit& fit,
+                          const HypothesisSearchOptions& options) {
+  PoseHypothesis pose;
+  pose.fit = fit;
+  pose.ref_from_query = fit.ref_from_query;
+  pose.visibility = visibility(reference, query, pose.ref_from_query, options.visibility);
+  pose.score = visibility_score(pose.visibility) - kScorePerResidual_m * pose.fit.rms_m;
+  return pose;
+}
+
 /// The two scans of an alignment and what their hypotheses come from.
 class Search {
  public:
@@ -95,12 +105,12 @@ std::vector<PoseHypothesis> pose_hypotheses(const ScanView& reference, const Sca
 
 PoseHypothesis refined_hypothesis(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
                                   const HypothesisSearchOptions& options) {
-  PoseHypothesis pose;
-  pose.fit = fit_to_lines(reference, query, ref_from_query, options.line);
-  pose.ref_from_query = pose.fit.ref_from_query;
-  pose.visibility = visibility(reference, query, pose.ref_from_query, options.visibility);
-  pose.score = visibility_score(pose.visibility) - kScorePerResidual_m * pose.fit.rms_m;
-  return pose;
+  return judged_fit(reference, query, fit_to_lines(reference, query, ref_from_query, options.line), options);
+}
+
+PoseHypothesis hypothesis_at(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
+                             const HypothesisSearchOptions& options) {
+  return judged_fit(reference, query, fit_at(reference, query, ref_from_query, options.line), options);
 }
 
 bool same_place(const Pose2& a, const Pose2& b) {

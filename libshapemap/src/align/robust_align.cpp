@@ -7,11 +7,6 @@
 namespace shapemap {
 namespace {
 
-RankedPose ranked_pose(const PoseHypothesis& pose) {
-  const double total = std::max(pose.visibility.total(), 1e-9);
-  return {pose.ref_from_query, pose.score, pose.visibility.agree / total, pose.visibility.crossed / total};
-}
-
 std::string text_of(const char* before, double value, const char* after) {
   std::ostringstream stream;
   stream.precision(3);
@@ -37,6 +32,24 @@ void give_verdict(Alignment& alignment, double agree, const ConfidenceOptions& o
 }
 
 }  // namespace
+
+RankedPose ranked_pose(const PoseHypothesis& pose) {
+  constexpr double kNothing = 1e-9;
+  const Visibility& v = pose.visibility;
+  const double total = std::max(v.total(), kNothing);
+  RankedPose ranked;
+  ranked.ref_from_query = pose.ref_from_query;
+  ranked.score = pose.score;
+  ranked.agree = v.agree / total;
+  ranked.crossed = v.crossed / total;
+  ranked.hidden = v.hidden / total;
+  ranked.unclear = v.unclear / total;
+  ranked.outside = v.outside / total;
+  ranked.cross_agree = v.cross_agree / std::max(v.cross_total, kNothing);
+  ranked.rms_m = pose.fit.rms_m;
+  ranked.partners = pose.fit.partners;
+  return ranked;
+}
 
 Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chosen, double margin,
                  const ConfidenceOptions& options) {

@@ -180,17 +180,22 @@ class RobustChain {
     Pose2 map_from_robot;
     for (std::size_t i = 0; i < scans_.size(); ++i) {
       PositionResult& outcome = result_.positions[scans_[i].position_index];
-      outcome.starts_fragment = i == 0;
+      outcome.starts_fragment = true;
       if (i > 0) {
         const Choice& choice = choices[i - 1];
-        outcome.alignment = judged(links_[i - 1], choice.alternative, choice.margin, options_.robust.confidence);
-        const bool improbable = outcome.alignment.probability < options_.smoothing.split_below;
-        outcome.starts_fragment = !outcome.alignment.has_pose() || improbable;
+        const std::vector<PoseHypothesis>& link = links_[i - 1];
+        outcome.alignment = judged(link, choice.alternative, choice.margin, options_.robust.confidence);
         outcome.reason = outcome.alignment.reason;
+        const bool improbable = outcome.alignment.probability < options_.smoothing.split_below;
+        outcome.starts_fragment = link.empty() || improbable;
         if (improbable && outcome.reason.empty()) outcome.reason = "less probable than it takes not to split the map";
+        // A pose that is likely to be wrong keeps the map in one piece, and is reported.
+        if (!link.empty()) map_from_robot = map_from_robot * link[choice.alternative].ref_from_query;
       }
-      map_from_robot = outcome.starts_fragment ? Pose2{} : map_from_robot * outcome.alignment.ref_from_query;
-      if (outcome.starts_fragment) result_.fragments.emplace_back();
+      if (outcome.starts_fragment) {
+        map_from_robot = {};
+        result_.fragments.emplace_back();
+      }
       outcome.fragment = static_cast<int>(result_.fragments.size()) - 1;
 
       PlacedPosition placed;

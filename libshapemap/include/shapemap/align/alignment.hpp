@@ -38,9 +38,18 @@ struct EnumNames<AlignStatus> {
 /// One of the poses that a scan may have.
 struct RankedPose {
   Pose2 ref_from_query = kNoPose;
-  double score = 0.0;    ///< logarithm of odds, up to a constant that all poses of a pair share
-  double agree = 0.0;    ///< share of the points that lie on what the other scan saw there
-  double crossed = 0.0;  ///< share of the points that beams of the other scan would have had to pass through
+  double score = 0.0;  ///< logarithm of odds, up to a constant that all poses of a pair share
+
+  /// Shares of the points of both scans, by what the other scan saw at their place; see Visibility.
+  double agree = 0.0;    ///< they lie on what it saw there
+  double crossed = 0.0;  ///< its beams would have had to pass through them
+  double hidden = 0.0;
+  double unclear = 0.0;
+  double outside = 0.0;
+  double cross_agree = 0.0;  ///< as `agree`, of the points across the direction that most of a scan runs in
+
+  double rms_m = 0.0;  ///< of the distances of the points from the lines through their partners
+  int partners = 0;    ///< query points that have one
 };
 
 /// The answer of align() and robust_align(). `ref_from_query` takes the query scan to the frame of the reference.

@@ -42,4 +42,8 @@ struct LineFit {
 LineFit fit_to_lines(const ScanView& reference, const ScanView& query, const Pose2& start,
                      const PointToLineOptions& options);
 
+/// How the query fits at a pose as it is, by the gate of the last iteration.
+LineFit fit_at(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
+               const PointToLineOptions& options);
+
 }  // namespace shapemap

@@ -56,6 +56,10 @@ std::vector<PoseHypothesis> pose_hypotheses(const ScanView& reference, const Sca
 PoseHypothesis refined_hypothesis(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
                                   const HypothesisSearchOptions& options);
 
+/// Judges a pose as it is.
+PoseHypothesis hypothesis_at(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
+                             const HypothesisSearchOptions& options);
+
 /// Whether two poses are one and the same after refinement.
 bool same_place(const Pose2& a, const Pose2& b);
 

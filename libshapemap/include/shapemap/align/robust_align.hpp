@@ -34,6 +34,9 @@ struct RobustOptions {
 /// Alignment::status.
 Alignment robust_align(const ScanView& reference, const ScanView& query, const RobustOptions& options);
 
+/// What is told of a hypothesis.
+RankedPose ranked_pose(const PoseHypothesis& pose);
+
 /// The verdict on `hypotheses`, best first, of which number `chosen` is taken; `margin` is what it is better by than
 /// any other place.
 Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chosen, double margin,

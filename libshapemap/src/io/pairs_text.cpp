@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "shapemap/io/pair_files.hpp"
+#include "text.hpp"
+
+namespace shapemap {
+namespace {
+
+std::size_t index_from(std::string_view word, const char* name, std::size_t num_positions, const LineReader& lines) {
+  const std::optional<long long> index = parse_count(word);
+  if (!index || *index < 0 || static_cast<std::size_t>(*index) >= num_positions) {
+    const std::string expected =
+        num_positions == 0 ? "but the log has no positions" : "expected 0 to " + std::to_string(num_positions - 1);
+    throw lines.error(std::string(name) + " is '" + std::string(word) + "', " + expected);
+  }
+  return static_cast<std::size_t>(*index);
+}
+
+double finite_from(std::string_view word, const char* name, const LineReader& lines) {
+  const std::optional<double> value = parse_number(word);
+  if (!value || !std::isfinite(*value)) {
+    throw lines.error(std::string(name) + " is '" + std::string(word) + "', expected a number");
+  }
+  return *value;
+}
+
+}  // namespace
+
+std::vector<PositionPair> read_pairs(const std::string& path, std::size_t num_references, std::size_t num_queries) {
+  ByteSource source(path);
+  LineReader lines(source);
+  std::vector<PositionPair> pairs;
+  while (const std::optional<std::string_view> line = lines.next()) {
+    Words words(line->substr(0, line->find('#')));
+    const std::size_t count = words.count_left();
+    if (count == 0) continue;
+    if (count != 2 && count != 5) {
+      throw lines.error("expected 'i j' or 'i j x_m y_m theta_rad', found " + std::to_string(count) + " values");
+    }
+    PositionPair pair;
+    pair.reference = index_from(words.next(), "the reference", num_references, lines);
+    pair.query = index_from(words.next(), "the query", num_queries, lines);
+    if (count == 5) {
+      const double x_m = finite_from(words.next(), "x_m", lines);
+      const double y_m = finite_from(words.next(), "y_m", lines);
+      pair.given_ref_from_query = Pose2{x_m, y_m, wrap_angle(finite_from(words.next(), "theta_rad", lines))};
+    }
+    pairs.push_back(pair);
+  }
+  if (!source.cut().empty()) throw InputError(path + ": " + source.cut());
+  if (pairs.empty()) throw InputError(path + ": names no pair, expected lines 'i j'");
+  return pairs;
+}
+
+}  // namespace shapemap
