@@ -28,8 +28,7 @@ std::vector<std::string> unplaced_lines(const MapResult& result, const Selection
 
 /// What makes the map though it may be wrong.
 bool is_uncertain(const PositionResult& position) {
-  return position.fragment >= 0 && !position.starts_fragment && position.alignment.has_pose() &&
-         !position.alignment.ok();
+  return position.fragment >= 0 && !position.starts_fragment && !position.alignment.ok();
 }
 
 std::vector<std::string> uncertain_lines(const MapResult& result, const SelectionOptions& selection) {
@@ -45,16 +44,21 @@ std::vector<std::string> uncertain_lines(const MapResult& result, const Selectio
 
 void print_uncertain(const MapResult& result) {
   std::size_t aligned = 0;
+  std::size_t too_apart = 0;
   std::size_t ambiguous = 0;
   std::size_t degenerate = 0;
   for (const PositionResult& position : result.positions) {
     if (position.fragment >= 0 && !position.starts_fragment) ++aligned;
     if (!is_uncertain(position)) continue;
-    ++(position.alignment.status == AlignStatus::kAmbiguous ? ambiguous : degenerate);
+    const AlignStatus status = position.alignment.status;
+    ++(status == AlignStatus::kAmbiguous ? ambiguous : status == AlignStatus::kDegenerate ? degenerate : too_apart);
   }
-  if (ambiguous + degenerate == 0) return;
-  std::fprintf(stderr, "shapemap-cli: %zu of %zu alignments are uncertain: %zu ambiguous, %zu degenerate\n",
-               ambiguous + degenerate, aligned, ambiguous, degenerate);
+  const std::size_t uncertain = too_apart + ambiguous + degenerate;
+  if (uncertain == 0) return;
+  std::fprintf(stderr,
+               "shapemap-cli: %zu of %zu alignments are uncertain: %zu with too little overlap, %zu ambiguous, "
+               "%zu degenerate\n",
+               uncertain, aligned, too_apart, ambiguous, degenerate);
 }
 
 void require_a_map(const MapArguments& arguments, const MapResult& result) {

@@ -95,7 +95,7 @@ def test_alignments_in_doubt_are_counted_and_listed(run, room_log, tmp_path):
     doubtful = ("long.log", "--sure-probability", 1)
     result = run(*doubtful, "--out", "map.png", "--report", "r.json")
     assert result.returncode == 0, result.stderr
-    assert "35 of 35 alignments are uncertain: 35 ambiguous, 0 degenerate" in result.stderr
+    assert "35 of 35 alignments are uncertain: 0 with too little overlap, 35 ambiguous, 0 degenerate" in result.stderr
     assert result.stderr.count(" ambiguous: the pose is right with a probability of ") == 20
     assert "... and 15 more, see --report" in result.stderr
     positions = json.loads((tmp_path / "r.json").read_text())["positions"]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/align/robust_align.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -67,6 +68,9 @@ Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chos
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     if (i != chosen) alignment.ranked.push_back(ranked_pose(hypotheses[i]));
   }
+  // Those that scans further back have lent stand behind the others.
+  std::stable_sort(alignment.ranked.begin() + 1, alignment.ranked.end(),
+                   [](const RankedPose& a, const RankedPose& b) { return a.score > b.score; });
   alignment.overlap_ratio = alignment.ranked.front().agree;
   give_verdict(alignment, alignment.overlap_ratio, options);
   return alignment;

@@ -58,8 +58,8 @@ struct Alignment {
   std::string reason;              ///< one line with the numbers behind `status`; empty when ok
   Pose2 ref_from_query = kNoPose;  ///< NaN unless has_pose()
 
-  /// By the robust method only: the poses that were found, best first; the probability that the first is right; and
-  /// its covariance, in metres and radians, large in directions that the scans do not hold.
+  /// By the robust method only: the pose that was taken, then the others, best first; the probability that it is
+  /// right; and its covariance, in metres and radians, large in directions that the scans do not hold.
   std::vector<RankedPose> ranked;
   double probability = std::numeric_limits<double>::quiet_NaN();
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -37,7 +37,7 @@ Alignment robust_align(const ScanView& reference, const ScanView& query, const R
 /// What is told of a hypothesis.
 RankedPose ranked_pose(const PoseHypothesis& pose);
 
-/// The verdict on `hypotheses`, best first, of which number `chosen` is taken; `margin` is what it is better by than
+/// The verdict on `hypotheses`, in any order, of which number `chosen` is taken; `margin` is what it is better by than
 /// any other place.
 Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chosen, double margin,
                  const ConfidenceOptions& options);
