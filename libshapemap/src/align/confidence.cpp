@@ -13,7 +13,7 @@ namespace {
 constexpr double kResidual_m = 0.12;
 
 /// Tangents are only known to a few degrees: what a point seems to tell about sliding along its own line is noise.
-constexpr double kTangentNoise = 0.05;
+constexpr double kTangentNoise = 0.10;
 
 /// As far as a position can be off and still be near.
 constexpr double kUnknown_m = 10.0;
@@ -24,11 +24,12 @@ double match_probability(const PoseHypothesis& best, double margin) {
   constexpr double kLeastMargin = 0.05;  // its logarithm stays finite
   constexpr double kLeastAgree = 0.02;
   const double agree = best.visibility.agree / std::max(best.visibility.total(), 1e-9);
-  const double held = std::clamp(margin, kLeastMargin, kFullMargin);
+  const double lead = std::clamp(margin, kLeastMargin, kFullMargin);
   // Logistic regression on pairs of scans with known poses, and on pairs of different places: scripts/fit_scores.py.
   const double log_odds =
-      -0.34 + 0.61 * held + 0.28 * std::log(held) + 0.58 * best.score + 1.07 * std::log(kLeastAgree + agree);
-  return 1.0 / (1.0 + std::exp(-log_odds));
+      -0.34 + 0.61 * lead + 0.28 * std::log(lead) + 0.58 * best.score + 1.07 * std::log(kLeastAgree + agree);
+  // However well the best place fits: of two that fit alike, each is right half of the time.
+  return 1.0 / (1.0 + std::exp(-std::min(log_odds, lead)));
 }
 
 Eigen::Matrix3d pose_covariance(const LineFit& fit) {

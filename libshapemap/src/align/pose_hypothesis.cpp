@@ -39,7 +39,8 @@ class Search {
       : reference_(reference),
         query_(query),
         options_(options),
-        voting_(reference, max_shift_m(reference, query, options.voting), options.voting),
+        max_shift_m_(max_shift_m(reference, query, options.voting)),
+        voting_(reference, max_shift_m_, options.voting),
         shapes_(reference, query) {}
 
   std::vector<PoseHypothesis> among(const std::vector<double>& rotations_rad, int peaks, int shape_segments) const {
@@ -50,6 +51,7 @@ class Search {
       }
       if (shape_segments == 0) continue;
       for (const Point2& shift_m : shapes_.translations(rotation_rad, shape_segments)) {
+        if (shift_m.lpNorm<Eigen::Infinity>() > max_shift_m_) continue;
         coarse.push_back(judged(shift_m, rotation_rad));
       }
     }
@@ -76,6 +78,7 @@ class Search {
   const ScanView& reference_;
   const ScanView& query_;
   const HypothesisSearchOptions& options_;
+  double max_shift_m_;
   TranslationVoting voting_;
   ShapeHypotheses shapes_;
 };

@@ -132,16 +132,19 @@ class RobustChain {
     if (!in_doubt(links_[link])) return borrowed;
     HypothesisSearchOptions quick = options_.robust.search;
     quick.hypotheses.all_rotations_below = -std::numeric_limits<double>::infinity();
+    const ScanView& reference = *scans_[link].view;
+    const ScanView& query = *scans_[link + 1].view;
+    const double limit_m = max_shift_m(reference, query, options_.robust.search.voting);
     Pose2 far_from_reference;
     for (std::size_t back = 1; back <= static_cast<std::size_t>(options_.smoothing.more_references); ++back) {
       if (link < back || links_[link - back].empty()) break;
       far_from_reference = links_[link - back].front().ref_from_query * far_from_reference;
       const ScanView& far = *scans_[link - back].view;
-      const std::vector<PoseHypothesis> seen_from_far = pose_hypotheses(far, *scans_[link + 1].view, quick);
+      const std::vector<PoseHypothesis> seen_from_far = pose_hypotheses(far, query, quick);
       for (std::size_t k = 0; k < std::min(kBorrowed, seen_from_far.size()); ++k) {
-        borrowed.push_back(refined_hypothesis(*scans_[link].view, *scans_[link + 1].view,
-                                              inverse(far_from_reference) * seen_from_far[k].ref_from_query,
-                                              options_.robust.search));
+        const Pose2 ref_from_query = inverse(far_from_reference) * seen_from_far[k].ref_from_query;
+        if (ref_from_query.translation().lpNorm<Eigen::Infinity>() > limit_m) continue;
+        borrowed.push_back(refined_hypothesis(reference, query, ref_from_query, options_.robust.search));
       }
     }
     return borrowed;
