@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from shapemap_sim.pairs import STAGES, PairResult, evaluate_pairs, lost_run
-from shapemap_sim.rates import Rate, all_rates, markdown
+from shapemap_sim.pairs import PairResult, evaluate_pairs, lost_run, stages_of
+from shapemap_sim.rates import Rate, all_rates, markdown, sureness
 from shapemap_sim.simulation import consecutive_overlaps, simulate
 from simulate_arena import add_arena_arguments, number, options_from, write_files
 
@@ -26,7 +26,7 @@ EXIT_OK = (0, 4)  # 4: map written, some positions not placed
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLE = """example:
   scripts/evaluate_arena.py --seeds 0-39 --jobs 4 --json results/arena.json --failures results/arena_failures
-  scripts/evaluate_arena.py --seeds 0,3,7 --spacing-m 2 --arg=--strict-paper
+  scripts/evaluate_arena.py --seeds 0,3,7 --spacing-m 2 --method paper --arg=--strict-paper
 
 A pair fails when its pose is more than 0.30 m or 5 degrees off (wrong) or when there is none (rejected).
 Exit status: 0 all runs gave a report, 1 some did not (their pairs count as rejected), 2 wrong usage."""
@@ -75,7 +75,7 @@ def save_failures(folder: Path, pairs: list[PairResult], simulation: Any, report
     from shapemap_sim.failure_picture import save_failure  # matplotlib only when pictures are asked for
 
     for pair in pairs:
-        if pair.verdict(STAGES[-1]) != "ok":
+        if pair.final_verdict != "ok":
             save_failure(folder / f"seed{pair.seed:03d}_pair{pair.index:02d}.png", pair, simulation, report)
 
 
@@ -97,6 +97,8 @@ def run_seed(seed: int, arguments: argparse.Namespace) -> Run:
             "--report",
             str(folder / "report.json"),
             "--quiet",
+            "--method",
+            arguments.method,
             *arguments.arg,
         ]
         report, fault = run_mapper(command, folder / "report.json", arguments.timeout_s)
@@ -109,13 +111,15 @@ def run_seed(seed: int, arguments: argparse.Namespace) -> Run:
     return Run(seed, pairs, "", float(seconds) if isinstance(seconds, int | float) else None)
 
 
-def pair_dict(pair: PairResult) -> dict[str, Any]:
+def pair_dict(pair: PairResult, stages: tuple[str, ...]) -> dict[str, Any]:
     return {
         "seed": pair.seed,
         "index": pair.index,
         "overlap": pair.overlap,
         "reason": pair.reason,
-        "verdicts": {stage: pair.verdict(stage) for stage in STAGES},
+        "verdict": pair.final_verdict,
+        "verdicts": {stage: pair.verdict(stage) for stage in stages},
+        "sure": pair.sure,
         "errors": {stage: asdict(e) for stage, e in pair.errors.items()} if pair.errors else None,
     }
 
@@ -128,13 +132,14 @@ def rate_dict(rate: Rate) -> dict[str, Any]:
 
 def as_json(runs: list[Run], rates: list[Rate], arguments: argparse.Namespace) -> str:
     options = {key: str(value) if isinstance(value, Path) else value for key, value in vars(arguments).items()}
+    stages = stages_of(pair for run in runs for pair in run.pairs)
     return (
         json.dumps(
             {
                 "options": options,
                 "rates": [rate_dict(rate) for rate in rates],
                 "runs": [{"seed": run.seed, "fault": run.fault, "seconds": run.seconds} for run in runs],
-                "pairs": [pair_dict(pair) for run in runs for pair in run.pairs],
+                "pairs": [pair_dict(pair, stages) for run in runs for pair in run.pairs],
             },
             indent=1,
         )
@@ -161,11 +166,14 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
         help="the mapper (default build/release/bin/shapemap-cli)",
     )
     parser.add_argument(
+        "--method", choices=("robust", "paper"), default="robust", help="of alignment (default %(default)s)"
+    )
+    parser.add_argument(
         "--arg",
         action="append",
         default=[],
         metavar="ARG",
-        help="passed on to the mapper; repeat for more, such as --arg=--rotation-range-deg --arg=5",
+        help="passed on to the mapper; repeat for more, such as --arg=--max-shift-m --arg=3",
     )
     parser.add_argument(
         "--jobs", type=number(1, 256, int), default=2, metavar="N", help="arenas at the same time (default %(default)s)"
@@ -196,8 +204,9 @@ def main(argv: list[str] | None = None) -> int:
             pool.shutdown(cancel_futures=True)
             print(f"evaluate_arena.py: {error}", file=sys.stderr)
             return 2
-    rates = all_rates([pair for run in runs for pair in run.pairs])
-    print(markdown(rates))
+    pairs = [pair for run in runs for pair in run.pairs]
+    rates = all_rates(pairs)
+    print(f"{markdown(rates)}\n\n{sureness(pairs)}")
     if arguments.json:
         arguments.json.parent.mkdir(parents=True, exist_ok=True)
         arguments.json.write_text(as_json(runs, rates, arguments), encoding="utf-8")

@@ -26,7 +26,11 @@ from shapemap_sim.rates import wilson_interval
 
 ROOT = Path(__file__).resolve().parent.parent
 MAX_ERROR_M, MAX_ERROR_DEG = 0.20, 5.0
-PAPER_ARGUMENTS = ["--method", "paper", "--rotation-range-deg", "90", "--rotation-step-deg", "2"]
+METHOD_ARGUMENTS = {
+    "robust": ["--method", "robust"],
+    # The grid of the paper is for robots that keep their heading; these turn.
+    "paper": ["--method", "paper", "--rotation-range-deg", "90", "--rotation-step-deg", "2"],
+}
 EXAMPLE = """example:
   SHAPEMAP_DATASETS=logs scripts/evaluate_logs.py carmen/intel-corrected.log.gz carmen/aces-corrected.log.gz
 """
@@ -74,12 +78,12 @@ def pair_errors(reference: list[np.ndarray], placed: dict[int, np.ndarray]) -> l
     return errors
 
 
-def score_log(path: Path, cli: Path, arguments: list[str]) -> LogScore:
-    """Map one log. Raises RuntimeError with the mapper's last line when it gives no map."""
+def score_log(path: Path, cli: Path, arguments: list[str], every: int = 1) -> LogScore:
+    """Map every so manieth scan of one log. Raises RuntimeError with the mapper's last line when it gives no map."""
     with tempfile.TemporaryDirectory() as folder:
         report_path = Path(folder) / "report.json"
         command = [cli, "--carmen", path, "--out", Path(folder) / "map.png", "--report", report_path, "--quiet"]
-        command += arguments
+        command += ["--every", every, *arguments]
         done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False)
         if done.returncode not in (0, 4):
             raise RuntimeError(f"{path.name}: {(done.stderr.strip().splitlines() or ['no message'])[-1]}")
@@ -89,7 +93,7 @@ def score_log(path: Path, cli: Path, arguments: list[str]) -> LogScore:
         pose = position.get("map_from_robot")
         if pose:
             placed[position["index"]] = np.array([pose["x_m"], pose["y_m"], np.radians(pose["theta_deg"])])
-    reference = reference_poses(path)
+    reference = reference_poses(path)[::every]
     errors = pair_errors(reference, placed)
     right = [m for m, deg in errors if m < MAX_ERROR_M and deg < MAX_ERROR_DEG]
     return LogScore(
@@ -128,18 +132,23 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("logs", nargs="+", type=Path, metavar="LOG", help="path, or path below SHAPEMAP_DATASETS")
     parser.add_argument("--cli", type=Path, default=ROOT / "build/release/bin/shapemap-cli", metavar="FILE")
     parser.add_argument(
-        "--arg",
-        action="append",
-        metavar="ARG",
-        help=f"argument for the mapper, repeatable (default: {' '.join(PAPER_ARGUMENTS)})",
+        "--method",
+        choices=tuple(METHOD_ARGUMENTS),
+        default="robust",
+        help="of alignment, the paper's with rotations of -90 to 90 degrees (default %(default)s)",
     )
+    parser.add_argument(
+        "--arg", action="append", default=[], metavar="ARG", help="one more argument for the mapper, repeatable"
+    )
+    parser.add_argument("--every", type=int, default=1, metavar="K", help="use only every K-th scan")
     arguments = parser.parse_args(argv)
     folder = Path(os.environ.get("SHAPEMAP_DATASETS", "."))
     scores, status = [], 0
     for log in arguments.logs:
         path = log if log.exists() else folder / log
         try:
-            scores.append(score_log(path, arguments.cli, arguments.arg or PAPER_ARGUMENTS))
+            mapper_arguments = METHOD_ARGUMENTS[arguments.method] + arguments.arg
+            scores.append(score_log(path, arguments.cli, mapper_arguments, arguments.every))
         except (RuntimeError, OSError, ValueError) as error:
             print(f"evaluate_logs.py: {error}", file=sys.stderr)
             status = 1

@@ -26,6 +26,37 @@ std::vector<std::string> unplaced_lines(const MapResult& result, const Selection
   return lines;
 }
 
+/// What makes the map though it may be wrong.
+bool is_uncertain(const PositionResult& position) {
+  return position.fragment >= 0 && !position.starts_fragment && position.alignment.has_pose() &&
+         !position.alignment.ok();
+}
+
+std::vector<std::string> uncertain_lines(const MapResult& result, const SelectionOptions& selection) {
+  std::vector<std::string> lines;
+  for (const PositionResult& position : result.positions) {
+    if (!is_uncertain(position)) continue;
+    const std::size_t index = index_in_whole_log(position.position_index, selection);
+    lines.push_back("position " + std::to_string(index) + " " + enum_name(position.alignment.status) + ": " +
+                    position.alignment.reason);
+  }
+  return lines;
+}
+
+void print_uncertain(const MapResult& result) {
+  std::size_t aligned = 0;
+  std::size_t ambiguous = 0;
+  std::size_t degenerate = 0;
+  for (const PositionResult& position : result.positions) {
+    if (position.fragment >= 0 && !position.starts_fragment) ++aligned;
+    if (!is_uncertain(position)) continue;
+    ++(position.alignment.status == AlignStatus::kAmbiguous ? ambiguous : degenerate);
+  }
+  if (ambiguous + degenerate == 0) return;
+  std::fprintf(stderr, "shapemap-cli: %zu of %zu alignments are uncertain: %zu ambiguous, %zu degenerate\n",
+               ambiguous + degenerate, aligned, ambiguous, degenerate);
+}
+
 void require_a_map(const MapArguments& arguments, const MapResult& result) {
   if (!result.placed().empty()) return;
   std::string why = "'" + arguments.log_path + "': none of its " + std::to_string(result.positions.size()) +
@@ -104,7 +135,9 @@ int run_map(const MapArguments& arguments) {
     const std::size_t max_listed = verbose ? static_cast<std::size_t>(-1) : kMaxListed;
     print_lines("warning: ", warnings, max_listed);
     print_lines("", unplaced, max_listed);
+    print_lines("", uncertain_lines(result, settings.selection), max_listed);
     if (verbose) print_details(log, costs, result.times);
+    print_uncertain(result);
     print_summary(arguments, result, costs.wall_s);
   }
   return unplaced.empty() ? kExitOk : kExitIncomplete;

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +13,8 @@ from .poses import Array, compose, inverse, transform
 from .sensor import points_of
 from .simulation import Simulation
 
-STAGES = ("before ICP", "after ICP", "after decoupled ICP")
+STAGES = ("before ICP", "after ICP", "after decoupled ICP")  # of the paper's method
+ROBUST_STAGES = ("robust",)
 MAX_ERROR_M = 0.30
 MAX_ERROR_DEG = 5.0
 
@@ -35,19 +36,30 @@ class StageError:
 @dataclass(frozen=True)
 class PairResult:
     """Position `index` against the one before it. `errors` by stage; None when the mapper did not trust its alignment
-    or gave none: `reason` then says why."""
+    or gave none: `reason` then says why. `sure`: the mapper has no doubts about the pose."""
 
     seed: int
     index: int
     overlap: float
     errors: Mapping[str, StageError] | None
     reason: str = ""
+    sure: bool = False
 
     def verdict(self, stage: str) -> str:
         """ok, wrong (a pose beyond the limits) or rejected (no pose)."""
         if self.errors is None:
             return "rejected"
         return "ok" if self.errors[stage].ok else "wrong"
+
+    @property
+    def final_verdict(self) -> str:
+        """The verdict on what the mapper used."""
+        return self.verdict(list(self.errors)[-1]) if self.errors else "rejected"
+
+
+def stages_of(pairs: Iterable[PairResult]) -> tuple[str, ...]:
+    """The stages of the method that made the pairs; the paper's when there is no pose to tell it by."""
+    return next((tuple(pair.errors) for pair in pairs if pair.errors), STAGES)
 
 
 def pose_from(fields: Mapping[str, float]) -> Array:
@@ -104,12 +116,14 @@ def stage_error(ref_from_query: Array, corrections: Array, truth: PairTruth) -> 
 
 
 def stage_errors(alignment: Mapping[str, Any], truth: PairTruth) -> dict[str, StageError]:
-    """Errors of an alignment that the report calls ok, by stage."""
+    """Errors of an alignment that has a pose, by stage."""
     none = np.zeros_like(truth.query_from_nominal)
     found = alignment["query_from_sub_scan"]
     corrections = np.array([pose_from(pose) for pose in found]) if found else none
     if corrections.shape != none.shape:
         raise ValueError(f"the report has {len(corrections)} sub-scans where the log has {len(none)}")
+    if alignment["shape_ref_from_query"] is None:
+        return {ROBUST_STAGES[0]: stage_error(pose_from(alignment["ref_from_query"]), corrections, truth)}
     stages = (("shape_ref_from_query", none), ("icp_ref_from_query", none), ("ref_from_query", corrections))
     return {
         name: stage_error(pose_from(alignment[key]), applied, truth) for name, (key, applied) in zip(STAGES, stages)
@@ -123,13 +137,14 @@ def evaluate_pairs(simulation: Simulation, report: Mapping[str, Any], overlaps: 
     for index in range(1, len(simulation.ranges)):
         entry = entries.get(index)
         alignment = entry["alignment"] if entry else None
-        errors, reason = None, "not in the report"
-        if alignment and alignment["status"] == "ok":
+        errors, reason, sure = None, "not in the report", False
+        if alignment and alignment.get("ref_from_query") and not entry.get("starts_fragment"):
             errors, reason = stage_errors(alignment, pair_truth(simulation, index)), ""
+            sure = alignment["status"] == "ok"
         elif entry:
             status = alignment["status"] if alignment else "not aligned"
             reason = f"{status}: {entry['reason']}" if entry["reason"] else status
-        results.append(PairResult(simulation.options.seed, index, float(overlaps[index - 1]), errors, reason))
+        results.append(PairResult(simulation.options.seed, index, float(overlaps[index - 1]), errors, reason, sure))
     return results
 
 

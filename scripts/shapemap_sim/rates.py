@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .pairs import STAGES, PairResult
+from .pairs import PairResult, stages_of
 
 BANDS = ((0.0, 0.3), (0.3, 0.45), (0.45, 0.6), (0.6, 0.75), (0.75, 1.0))
 
@@ -73,9 +73,16 @@ def band_of(overlap: float) -> str:
 
 def all_rates(pairs: list[PairResult]) -> list[Rate]:
     """Every band at every stage, then all pairs."""
-    names = [f"{low:.2f}-{high:.2f}" for low, high in BANDS]
-    rows = [rate(name, stage, [p for p in pairs if band_of(p.overlap) == name]) for name in names for stage in STAGES]
-    return rows + [rate("all", stage, pairs) for stage in STAGES]
+    names, stages = [f"{low:.2f}-{high:.2f}" for low, high in BANDS], stages_of(pairs)
+    rows = [rate(name, stage, [p for p in pairs if band_of(p.overlap) == name]) for name in names for stage in stages]
+    return rows + [rate("all", stage, pairs) for stage in stages]
+
+
+def sureness(pairs: list[PairResult]) -> str:
+    """One line: how often the mapper has no doubts, and how often it should have had."""
+    sure = [pair for pair in pairs if pair.sure]
+    wrong = sum(pair.final_verdict == "wrong" for pair in sure)
+    return f"{len(sure)} of {len(pairs)} pairs are called sure; {wrong} of these are wrong."
 
 
 def markdown(rates: list[Rate]) -> str:

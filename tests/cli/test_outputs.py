@@ -27,8 +27,10 @@ def carmen_poses(text):
     return [tuple(float(v) for v in row[2 + int(row[1]) : 5 + int(row[1])]) for row in rows]
 
 
-def test_a_run_maps_the_room_and_writes_all_that_is_asked_for(run, room_log, tmp_path):
+@pytest.mark.parametrize("method", ["robust", "paper"])
+def test_a_run_maps_the_room_and_writes_all_that_is_asked_for(run, room_log, tmp_path, method):
     result = run(
+        *["--method", method],
         *["--carmen", "room.log", "--out", "map.png", "--trajectory", "map.tum", "--report", "report.json"],
         *["--carmen-out", "out.log", "--rawlog-out", "out.rawlog.gz", "--draw-path"],
     )
@@ -64,24 +66,47 @@ def test_the_written_logs_map_again(run, room_log, tmp_path):
         assert len(read_tum(again.stdout)) == 12
 
 
-def test_unplaced_positions_are_listed_and_left_out(run, tmp_path):
+@pytest.mark.parametrize(("method", "num_placed"), [("robust", 8), ("paper", 5)])
+def test_unplaced_positions_are_listed_and_left_out(run, tmp_path, method, num_placed):
+    """Blind positions split the paper's map, and leave a gap in the other one."""
     lines = [synthetic_log.flaser(synthetic_log.scan(pose), 1.0 + i) for i, pose in enumerate(synthetic_log.path(8))]
     lines[3:3] = [synthetic_log.flaser([81.83] * 181, 100.0 + i) for i in range(25)]
     (tmp_path / "gap.log").write_text("".join(lines))
-    result = run("gap.log", "--out", "map.png", "--trajectory", "-", "--report", "r.json", "--carmen-out", "out.log")
+    log = ("gap.log", "--method", method)
+    result = run(*log, "--out", "map.png", "--trajectory", "-", "--report", "r.json", "--carmen-out", "out.log")
     assert result.returncode == 4, result.stderr
     listed = [line for line in result.stderr.splitlines() if "not placed" in line]
     report = json.loads((tmp_path / "r.json").read_text())
-    assert report["num_placed"] == 5
+    assert report["num_placed"] == num_placed
     assert report["num_positions"] == 33
     assert len(listed) == 20
-    assert "... and 8 more, see --report" in result.stderr
-    assert len(result.stdout.splitlines()) == 5
-    assert (tmp_path / "out.log").read_text().count("FLASER") == 5
+    assert f"... and {33 - num_placed - 20} more, see --report" in result.stderr
+    assert len(result.stdout.splitlines()) == num_placed
+    assert (tmp_path / "out.log").read_text().count("FLASER") == num_placed
     assert all(p["reason"] for p in report["positions"][3:28])
-    assert "not placed" not in run("gap.log", "--out", "quiet.png", "--quiet").stderr
-    verbose = run("gap.log", "--out", "verbose.png", "--verbose").stderr
-    assert verbose.count("not placed") == 28
+    assert "not placed" not in run(*log, "--out", "quiet.png", "--quiet").stderr
+    verbose = run(*log, "--out", "verbose.png", "--verbose").stderr
+    assert verbose.count("not placed") == 33 - num_placed
+
+
+def test_alignments_in_doubt_are_counted_and_listed(run, room_log, tmp_path):
+    """No alignment is ever certain, so that a call for certainty leaves all of them in doubt."""
+    (tmp_path / "long.log").write_text(room_log.read_text() * 3)
+    doubtful = ("long.log", "--sure-probability", 1)
+    result = run(*doubtful, "--out", "map.png", "--report", "r.json")
+    assert result.returncode == 0, result.stderr
+    assert "35 of 35 alignments are uncertain: 35 ambiguous, 0 degenerate" in result.stderr
+    assert result.stderr.count(" ambiguous: the pose is right with a probability of ") == 20
+    assert "... and 15 more, see --report" in result.stderr
+    positions = json.loads((tmp_path / "r.json").read_text())["positions"]
+    assert {p["alignment"]["status"] for p in positions[1:]} == {"ambiguous"}
+    assert all(0 < p["alignment"]["probability"] < 1 for p in positions[1:])
+    assert all(p["alignment"]["ref_from_query"] for p in positions[1:])
+    verbose = run(*doubtful, "--out", "verbose.png", "--verbose").stderr
+    assert verbose.count(" ambiguous: ") == 35
+    assert run(*doubtful, "--out", "quiet.png", "--quiet").stderr == ""
+    sure = run("room.log", "--sure-probability", 0, "--max-deviation-m", 10, "--out", "sure.png").stderr
+    assert "uncertain" not in sure
 
 
 def test_selection_keeps_count_in_the_whole_log(run, room_log, tmp_path):

@@ -35,12 +35,13 @@ GARBAGE = {
 }
 
 
+@pytest.mark.parametrize("method", ["robust", "paper"])
 @pytest.mark.parametrize("kind", GARBAGE)
-def test_odometry_in_a_carmen_log_is_ignored(outputs_of, tmp_path, kind):
+def test_odometry_in_a_carmen_log_is_ignored(outputs_of, tmp_path, kind, method):
     (tmp_path / "clean.log").write_text(synthetic_log.carmen_log())
     garbage = "PARAM robot_frontlaser_offset 0.5\nODOM " + " ".join(GARBAGE[kind](0)) + " 1 robot 1\n"
     (tmp_path / "garbage.log").write_text(garbage + synthetic_log.carmen_log(fields=GARBAGE[kind]))
-    assert outputs_of("a", "clean.log") == outputs_of("b", "garbage.log")
+    assert outputs_of("a", "clean.log", "--method", method) == outputs_of("b", "garbage.log", "--method", method)
 
 
 def test_odometry_in_a_rawlog_is_ignored(run, outputs_of, tmp_path):
@@ -53,11 +54,12 @@ def test_odometry_in_a_rawlog_is_ignored(run, outputs_of, tmp_path):
     assert outputs_of("a", "plain.rawlog") == outputs_of("b", "poses.rawlog")
 
 
-def test_threads_and_runs_do_not_change_a_byte(outputs_of, tmp_path):
+@pytest.mark.parametrize("method", ["robust", "paper"])
+def test_threads_and_runs_do_not_change_a_byte(outputs_of, tmp_path, method):
     (tmp_path / "room.log").write_text(synthetic_log.carmen_log())
-    first = outputs_of("one", "room.log", "--threads", 1)
-    assert outputs_of("again", "room.log", "--threads", 1) == first
-    assert outputs_of("four", "room.log", "--threads", 4) == first
+    first = outputs_of("one", "room.log", "--method", method, "--threads", 1)
+    assert outputs_of("again", "room.log", "--method", method, "--threads", 1) == first
+    assert outputs_of("four", "room.log", "--method", method, "--threads", 4) == first
 
 
 def test_the_format_recognised_is_the_format_forced(outputs_of, tmp_path):

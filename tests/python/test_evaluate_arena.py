@@ -13,9 +13,19 @@ import numpy as np
 import pytest
 
 import evaluate_arena
-from shapemap_sim.pairs import STAGES, PairResult, StageError, evaluate_pairs, lost_run, pair_truth, pose_error
+from shapemap_sim.pairs import (
+    ROBUST_STAGES,
+    STAGES,
+    PairResult,
+    StageError,
+    evaluate_pairs,
+    lost_run,
+    pair_truth,
+    pose_error,
+    stages_of,
+)
 from shapemap_sim.poses import Array, compose, inverse
-from shapemap_sim.rates import all_rates, band_of, markdown, rate, wilson_interval
+from shapemap_sim.rates import all_rates, band_of, markdown, rate, sureness, wilson_interval
 from shapemap_sim.robot import RobotOptions
 from shapemap_sim.simulation import Simulation, SimulationOptions, simulate
 
@@ -86,6 +96,26 @@ def test_corrections_all_one_way_are_an_error_of_the_pose(arena: Simulation) -> 
     assert [pair.verdict(stage) for stage in STAGES] == ["ok", "ok", "wrong"]
     assert pair.errors is not None
     assert pair.errors[STAGES[2]].error_m == pytest.approx(0.4)
+
+
+def test_a_method_of_one_stage_has_one_verdict(arena: Simulation) -> None:
+    report = perfect_report(arena)
+    for entry, status in zip(report["positions"][1:], ("ok", "ambiguous")):
+        entry["alignment"] |= {"status": status, "shape_ref_from_query": None, "icp_ref_from_query": None}
+        entry["alignment"]["query_from_sub_scan"] = []
+    pairs = evaluate_pairs(arena, report, np.array([0.5, 0.6]))
+    assert stages_of(pairs) == ROBUST_STAGES
+    assert [pair.final_verdict for pair in pairs] == ["ok", "ok"]
+    assert [pair.sure for pair in pairs] == [True, False]
+    assert sureness(pairs) == "1 of 2 pairs are called sure; 0 of these are wrong."
+    assert [row.stage for row in all_rates(pairs) if row.num_pairs] == [ROBUST_STAGES[0]] * 3
+
+
+def test_a_pose_that_splits_the_map_is_rejected(arena: Simulation) -> None:
+    report = perfect_report(arena)
+    report["positions"][1]["starts_fragment"] = True
+    first, second = evaluate_pairs(arena, report, np.array([0.5, 0.6]))
+    assert (first.final_verdict, second.final_verdict) == ("rejected", "ok")
 
 
 def test_rejected_and_missing_pairs_are_not_wrong_poses(arena: Simulation) -> None:
@@ -181,6 +211,7 @@ def test_program_runs_a_mapper_and_writes_what_it_found(tmp_path: Path, capsys: 
     pytest.importorskip("matplotlib")
     body = """
 assert '--passed-on' in sys.argv
+assert sys.argv[sys.argv.index('--method') + 1] == 'paper'
 pose = {'x_m': 0.0, 'y_m': 0.0, 'theta_deg': 0.0}
 ok = {'status': 'ok', 'shape_ref_from_query': pose, 'icp_ref_from_query': pose, 'ref_from_query': pose,
       'query_from_sub_scan': []}
@@ -196,6 +227,8 @@ sys.exit(4)"""
             "3",
             "--jobs",
             "1",
+            "--method",
+            "paper",
             "--arg=--passed-on",
             "--cli",
             str(made_up_mapper(tmp_path, body)),

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The judge of real logs, on poses known by hand."""
 
+import sys
+
 import numpy as np
 import pytest
 
-from evaluate_logs import LogScore, markdown, pair_errors, reference_poses
+from evaluate_logs import METHOD_ARGUMENTS, LogScore, main, markdown, pair_errors, reference_poses
 
 
 def test_a_pair_with_an_unplaced_scan_is_never_right():
@@ -34,3 +36,13 @@ def test_the_table_has_the_mean_of_the_logs():
     table = markdown([LogScore("a", 11, 11, 10, 0.03, 1.0, 80.0), LogScore("b", 11, 6, 5, 0.03, 1.0, 80.0)])
     assert "| a | 11 | 11 | 100.0 %" in table
     assert "| mean | | | 75.0 %" in table
+
+
+@pytest.mark.parametrize(("chosen", "method"), [([], "robust"), (["--method", "paper"], "paper")])
+def test_the_mapper_is_told_the_method_and_what_is_passed_on(tmp_path, capsys, chosen, method):
+    (tmp_path / "a.log").write_text("FLASER 1 5.0 0 0 0 0 0 0 1.0 h 1.0\n" * 2)
+    mapper = tmp_path / "mapper"
+    mapper.write_text(f"#!{sys.executable}\nimport sys\nsys.exit(' '.join(sys.argv))\n")
+    mapper.chmod(0o755)
+    assert main([str(tmp_path / "a.log"), "--cli", str(mapper), *chosen, "--arg=--threads", "--arg=2"]) == 1
+    assert " ".join([*METHOD_ARGUMENTS[method], "--threads", "2"]) in capsys.readouterr().err

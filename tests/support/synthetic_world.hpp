@@ -123,9 +123,10 @@ inline Position scan_of(const World& world, const Pose2& world_from_robot, const
   return scan_of(world, world_from_robot, scanner, rng);
 }
 
-/// The options that the tests of the method depend on, whatever the defaults are.
+/// The options that the tests of the paper's method depend on, whatever the defaults are.
 inline MappingOptions paper_options() {
   MappingOptions options;
+  options.chain.method = Method::kPaper;
   options.polylines.run_gap_m = 0.20;
   options.polylines.run_gap_beams = 5.0;
   options.polylines.simplify_tolerance_m = 0.05;

@@ -22,6 +22,7 @@ constexpr double kScorePerResidual_m = 56.0;
 
 bool better(const PoseHypothesis& a, const PoseHypothesis& b) { return a.score > b.score; }
 
+<<<<<<< HEAD
 bool same_place(const Pose2& a, const Pose2& b) {
   return (a.translation() - b.translation()).norm() < kSamePlace_m &&
          angle_between(a.theta_rad, b.theta_rad) < kSameHeading_rad;
@@ -37,6 +38,8 @@ PoseHypothesis judged_fit(const ScanView& reference, const ScanView& query, cons
   return pose;
 }
 
+=======
+>>>>>>> 96f73adff30c075d4b7b45635dcaf0955ca38bf7
 /// The two scans of an alignment and what their hypotheses come from.
 class Search {
  public:
@@ -116,6 +119,11 @@ PoseHypothesis refined_hypothesis(const ScanView& reference, const ScanView& que
 PoseHypothesis hypothesis_at(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
                              const HypothesisSearchOptions& options) {
   return judged_fit(reference, query, fit_at(reference, query, ref_from_query, options.line), options);
+}
+
+bool same_place(const Pose2& a, const Pose2& b) {
+  return (a.translation() - b.translation()).norm() < kSamePlace_m &&
+         angle_between(a.theta_rad, b.theta_rad) < kSameHeading_rad;
 }
 
 std::vector<PoseHypothesis> best_distinct(std::vector<PoseHypothesis> hypotheses, int count) {

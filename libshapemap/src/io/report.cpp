@@ -76,16 +76,40 @@ Json log_json(const RunReport& report) {
           {"sensors", sensors}};
 }
 
+Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+/// Rows of x [m], y [m], theta [rad]; null when there is none.
+Json covariance_json(const Eigen::Matrix3d& covariance) {
+  if (!covariance.allFinite()) return nullptr;
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < 3; ++i) rows.push_back({covariance(i, 0), covariance(i, 1), covariance(i, 2)});
+  return rows;
+}
+
+Json ranked_json(const std::vector<RankedPose>& ranked) {
+  Json list = Json::array();
+  for (const RankedPose& pose : ranked) {
+    list.push_back({{"ref_from_query", pose_json(pose.ref_from_query)},
+                    {"score", number_json(pose.score)},
+                    {"agree", pose.agree},
+                    {"crossed", pose.crossed}});
+  }
+  return list;
+}
+
 /// Null where nothing was aligned: at the start of the log and after a position without shape.
 Json alignment_json(const PositionResult& position) {
   const bool was_aligned = !position.starts_fragment || !position.reason.empty();
   if (!was_aligned) return nullptr;
   const Alignment& alignment = position.alignment;
-  const auto if_ok = [&](const Pose2& pose) { return alignment.ok() ? pose_json(pose) : Json(nullptr); };
+  const auto if_any = [&](const Pose2& pose) { return alignment.has_pose() ? pose_json(pose) : Json(nullptr); };
   return {{"status", enum_name(alignment.status)},
-          {"ref_from_query", if_ok(alignment.ref_from_query)},
-          {"shape_ref_from_query", if_ok(alignment.shape_ref_from_query)},
-          {"icp_ref_from_query", if_ok(alignment.icp_ref_from_query)},
+          {"ref_from_query", if_any(alignment.ref_from_query)},
+          {"shape_ref_from_query", if_any(alignment.shape_ref_from_query)},
+          {"icp_ref_from_query", if_any(alignment.icp_ref_from_query)},
+          {"probability", number_json(alignment.probability)},
+          {"covariance", covariance_json(alignment.covariance)},
+          {"ranked", ranked_json(alignment.ranked)},
           {"rotation_deg", alignment.rotation_rad / kDegree},
           {"num_correspondences", alignment.num_correspondences},
           {"mean_distance_m", alignment.mean_distance_m},

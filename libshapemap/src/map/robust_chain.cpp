@@ -112,7 +112,7 @@ class RobustChain {
     });
     for (std::size_t i = 0; i < count; ++i) {
       std::vector<PoseHypothesis>& link = links_[first + i - 1];
-      link.insert(link.end(), borrowed_[i].begin(), borrowed_[i].end());
+      for (const PoseHypothesis& pose : borrowed_[i]) add_if_new(pose, link);
       for (const PoseHypothesis& pose : link) choices_.scores[first + i - 1].push_back(pose.score);
       if (link.empty()) choices_.scores[first + i - 1].push_back(0.0);
     }
@@ -146,6 +146,14 @@ class RobustChain {
     return borrowed;
   }
 
+  /// A pose twice would be its own rival, and leave no margin between the two.
+  static void add_if_new(const PoseHypothesis& pose, std::vector<PoseHypothesis>& link) {
+    const bool known = std::any_of(link.begin(), link.end(), [&](const PoseHypothesis& other) {
+      return same_place(other.ref_from_query, pose.ref_from_query);
+    });
+    if (!known) link.push_back(pose);
+  }
+
   bool in_doubt(const std::vector<PoseHypothesis>& link) const {
     if (link.empty()) return true;
     const double margin = link.size() > 1 ? link[0].score - link[1].score : kFullMargin;
@@ -172,16 +180,28 @@ class RobustChain {
     Pose2 map_from_robot;
     for (std::size_t i = 0; i < scans_.size(); ++i) {
       PositionResult& outcome = result_.positions[scans_[i].position_index];
-      outcome.starts_fragment = i == 0;
+      outcome.starts_fragment = true;
       if (i > 0) {
         const Choice& choice = choices[i - 1];
-        outcome.alignment = judged(links_[i - 1], choice.alternative, choice.margin, options_.robust.confidence);
-        outcome.starts_fragment =
-            !outcome.alignment.has_pose() || outcome.alignment.probability < options_.smoothing.split_below;
+<<<<<<< HEAD
+        const std::vector<PoseHypothesis>& link = links_[i - 1];
+        outcome.alignment = judged(link, choice.alternative, choice.margin, options_.robust.confidence);
         outcome.reason = outcome.alignment.reason;
+        outcome.starts_fragment = link.empty() || outcome.alignment.probability < options_.smoothing.split_below;
+        // A pose that is likely to be wrong keeps the map in one piece, and is reported.
+        if (!link.empty()) map_from_robot = map_from_robot * link[choice.alternative].ref_from_query;
       }
-      map_from_robot = outcome.starts_fragment ? Pose2{} : map_from_robot * outcome.alignment.ref_from_query;
-      if (outcome.starts_fragment) result_.fragments.emplace_back();
+      if (outcome.starts_fragment) {
+        map_from_robot = {};
+        result_.fragments.emplace_back();
+=======
+        outcome.alignment = judged(links_[i - 1], choice.alternative, choice.margin, options_.robust.confidence);
+        const bool improbable = outcome.alignment.probability < options_.smoothing.split_below;
+        outcome.starts_fragment = !outcome.alignment.has_pose() || improbable;
+        outcome.reason = outcome.alignment.reason;
+        if (improbable && outcome.reason.empty()) outcome.reason = "less probable than it takes not to split the map";
+>>>>>>> 96f73adff30c075d4b7b45635dcaf0955ca38bf7
+      }
       outcome.fragment = static_cast<int>(result_.fragments.size()) - 1;
 
       PlacedPosition placed;

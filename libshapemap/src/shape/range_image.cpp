@@ -39,7 +39,10 @@ int RangeImage::beam_at(double bearing_rad) const {
   double beam = (bearing_rad - first_bearing_rad) * per_rad + 0.5;
   while (beam < 0.0) beam += beams_in_turn;
   while (beam >= beams_in_turn) beam -= beams_in_turn;
-  return beam < static_cast<double>(beams.size()) ? static_cast<int>(beam) : -1;
+  const auto count = static_cast<double>(beams.size());
+  if (beam < count) return static_cast<int>(beam);
+  // Rounding leaves no gap in a full circle.
+  return beams_in_turn - count < 1e-6 ? static_cast<int>(beams.size()) - 1 : -1;
 }
 
 RangeImage range_image(const SubScan& sub_scan, const SubScanShape& shape) {

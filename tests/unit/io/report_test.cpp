@@ -79,6 +79,40 @@ TEST_F(Report, TellsWhatBecameOfEachPosition) {
   EXPECT_TRUE(third["map_from_robot"].is_null());
 }
 
+TEST_F(Report, OfThePapersMethodHasNoProbability) {
+  const Json alignment = parsed()["positions"][1]["alignment"];
+  EXPECT_TRUE(alignment["probability"].is_null());
+  EXPECT_TRUE(alignment["covariance"].is_null());
+  EXPECT_TRUE(alignment["ranked"].empty());
+}
+
+TEST_F(Report, TellsHowSureAPoseIsAndWhatElseItMightBe) {
+  Alignment& alignment = result_.positions[1].alignment;
+  for (const AlignStatus status : {AlignStatus::kOk, AlignStatus::kAmbiguous, AlignStatus::kDegenerate}) {
+    alignment.status = status;
+    alignment.probability = 0.75;
+    alignment.covariance << 1.0, 2.0, 3.0, 2.0, 5.0, 6.0, 3.0, 6.0, 9.0;
+    alignment.ranked = {{alignment.ref_from_query, 3.5, 0.6, 0.1}, {{-1.0, 0.0, 0.0}, 3.25, 0.5, 0.2}};
+    const Json shown = parsed()["positions"][1]["alignment"];
+    EXPECT_EQ(shown["status"], enum_name(status));
+    EXPECT_EQ(shown["ref_from_query"]["x_m"], 1.0) << "a pose in doubt is a pose";
+    EXPECT_TRUE(shown["shape_ref_from_query"].is_null());
+    EXPECT_EQ(shown["probability"], 0.75);
+    EXPECT_EQ(shown["covariance"], Json::parse("[[1, 2, 3], [2, 5, 6], [3, 6, 9]]"));
+    ASSERT_EQ(shown["ranked"].size(), 2U);
+    EXPECT_EQ(shown["ranked"][1]["ref_from_query"]["x_m"], -1.0);
+    EXPECT_EQ(shown["ranked"][1]["score"], 3.25);
+    EXPECT_EQ(shown["ranked"][1]["agree"], 0.5);
+    EXPECT_EQ(shown["ranked"][1]["crossed"], 0.2);
+  }
+}
+
+TEST_F(Report, ShowsNoPoseWhereNoneIsTrusted) {
+  Alignment& alignment = result_.positions[1].alignment;
+  alignment.status = AlignStatus::kTooLittleOverlap;
+  EXPECT_TRUE(parsed()["positions"][1]["alignment"]["ref_from_query"].is_null());
+}
+
 TEST_F(Report, ListsFragmentsAndWhichOneIsTheMap) {
   const Json fragments = parsed()["fragments"];
   ASSERT_EQ(fragments.size(), 2U);
@@ -95,7 +129,7 @@ TEST_F(Report, HoldsEveryOptionInTheUnitOfItsName) {
   const Json options = parsed()["options"];
   EXPECT_NEAR(options["max-mount-tilt-deg"].get<double>(), 25.0, 1e-12);
   EXPECT_EQ(options["resolution-m"], 0.02);
-  EXPECT_EQ(options["method"], "paper");
+  EXPECT_EQ(options["method"], "robust");
   EXPECT_EQ(options["skip"], 5);
   MappingOptions::groups(mapping_, [&](const char* title, const auto& group) {
     std::decay_t<decltype(group)>::fields(group, [&](const Field& field, const auto&) {

@@ -32,7 +32,7 @@ struct PositionResult {
   int fragment = -1;  ///< index into MapResult::fragments; -1: no usable shape, in no fragment
   bool starts_fragment = false;
   Alignment alignment;  ///< against the scans before it; meaningless for the first position
-  std::string reason;   ///< empty when aligned; else why not, one line
+  std::string reason;   ///< empty when aligned without doubt; else one line that says why not
 };
 
 /// Seconds spent per stage, summed over threads where a stage is threaded.

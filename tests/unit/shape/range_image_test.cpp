@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/shape/range_image.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <random>
+
+#include "support/matchers.hpp"
+#include "support/views.hpp"
+
+namespace shapemap {
+namespace {
+
+using test::IsNearAngle;
+using test::IsNearPoint;
+
+RangeImage image_of(const SubScan& sub_scan) { return range_image(sub_scan, sub_scan_shape(sub_scan, 0, {}, {}, {})); }
+
+RangeImage empty_image(double first_bearing_rad, double step_rad, std::size_t num_beams) {
+  RangeImage image;
+  image.first_bearing_rad = first_bearing_rad;
+  image.step_rad = step_rad;
+  image.beams.resize(num_beams);
+  return image;
+}
+
+double bearing_rad(const RangeImage& image, std::size_t beam) {
+  return image.first_bearing_rad + static_cast<double>(beam) * image.step_rad;
+}
+
+/// How far the nearest beam points away from a bearing, by looking at all of them.
+double off_nearest_rad(const RangeImage& image, double bearing) {
+  double nearest_rad = 2.0 * kPi;
+  for (std::size_t k = 0; k < image.beams.size(); ++k) {
+    nearest_rad = std::min(nearest_rad, angle_between(bearing, bearing_rad(image, k)));
+  }
+  return nearest_rad;
+}
+
+void expect_nearest(const RangeImage& image, double bearing) {
+  constexpr double kRounding_rad = 1e-9;
+  const double off_rad = off_nearest_rad(image, bearing);
+  const int beam = image.beam_at(bearing);
+  if (std::abs(off_rad - 0.5 * image.step_rad) < kRounding_rad) return;  // on the border
+  if (off_rad > 0.5 * image.step_rad) {
+    EXPECT_EQ(beam, -1) << bearing;
+    return;
+  }
+  ASSERT_GE(beam, 0) << bearing;
+  ASSERT_LT(beam, static_cast<int>(image.beams.size()));
+  EXPECT_NEAR(angle_between(bearing, bearing_rad(image, static_cast<std::size_t>(beam))), off_rad, kRounding_rad);
+}
+
+TEST(RangeImage, FindsTheBeamThatALookAtAllOfThemFinds) {
+  std::mt19937 rng(1);
+  std::uniform_real_distribution<double> angle(-4 * kPi, 4 * kPi);
+  for (int round = 0; round < 300; ++round) {
+    const double step_rad = std::uniform_real_distribution<double>(0.1, 5.0)(rng) * kDegree;
+    const auto most = static_cast<std::size_t>(2 * kPi / step_rad);
+    const RangeImage image =
+        empty_image(angle(rng), step_rad, std::uniform_int_distribution<std::size_t>(1, most)(rng));
+    for (int look = 0; look < 30; ++look) expect_nearest(image, angle(rng));
+  }
+}
+
+TEST(RangeImage, LooksAllAroundWithoutASeam) {
+  std::mt19937 rng(2);
+  std::uniform_real_distribution<double> angle(-4 * kPi, 4 * kPi);
+  for (const std::size_t num_beams : {1U, 2U, 7U, 359U, 360U, 720U, 1081U, 4096U}) {
+    const double step_rad = 2.0 * kPi / static_cast<double>(num_beams);
+    for (int round = 0; round < 200; ++round) {
+      const RangeImage image = empty_image(angle(rng), step_rad, num_beams);
+      const double seam_rad = image.first_bearing_rad - 0.5 * step_rad;
+      for (const double turn_rad : {-2.0 * kPi, 0.0, 2.0 * kPi}) {
+        for (const double nudge_rad : {-1e-15, -1e-16, 0.0, 1e-16, 1e-15}) {
+          const int beam = image.beam_at(seam_rad + turn_rad + nudge_rad);
+          EXPECT_TRUE(beam == 0 || beam == static_cast<int>(num_beams) - 1) << beam << " of " << num_beams;
+        }
+      }
+      expect_nearest(image, angle(rng));
+    }
+  }
+}
+
+TEST(RangeImage, WithTheFirstBearingTwiceFindsOneOfThem) {
+  const RangeImage image = empty_image(-kPi, kDegree, 361);  // as scanners over 360 degrees, both ends included
+  for (int k = -720; k <= 720; ++k) expect_nearest(image, (k + 0.3) * kDegree);
+}
+
+struct Mounting {
+  const char* name;
+  double first_angle_rad;
+  double angle_step_rad;
+  MountPose robot_from_sensor;
+};
+
+class RangeImageOfMounting : public testing::TestWithParam<Mounting> {};
+
+/// Every return is in one beam, which is the one that points at it.
+TEST_P(RangeImageOfMounting, HasEveryReturnWhereItWasSeen) {
+  std::mt19937 rng(3);
+  std::uniform_real_distribution<float> range_m(1.0F, 3.0F);
+  SubScan sub_scan;
+  sub_scan.first_angle_rad = GetParam().first_angle_rad;
+  sub_scan.angle_step_rad = GetParam().angle_step_rad;
+  sub_scan.max_range_m = 20.0;
+  sub_scan.robot_from_sensor = GetParam().robot_from_sensor;
+  sub_scan.nominal_heading_rad = 0.7;
+  for (int k = 0; k < 180; ++k) sub_scan.ranges_m.push_back(k % 7 == 3 ? std::nanf("") : range_m(rng));
+  const RangeImage image = image_of(sub_scan);
+  ASSERT_EQ(image.beams.size(), sub_scan.ranges_m.size());
+
+  std::size_t num_hits = 0;
+  for (const RangeImage::Beam& beam : image.beams) num_hits += beam.range_m > 0.0 ? 1 : 0;
+  const std::vector<Return> returns = returns_in_robot(sub_scan, {});
+  EXPECT_EQ(num_hits, returns.size());
+  for (const Return& r : returns) {
+    const Point2 in_sensor_m = image.sensor_from_robot * r.p_in_robot_m;
+    const double bearing = std::atan2(in_sensor_m.y(), in_sensor_m.x());
+    const int k = image.beam_at(bearing);
+    ASSERT_GE(k, 0);
+    const RangeImage::Beam& beam = image.beams[static_cast<std::size_t>(k)];
+    EXPECT_THAT(beam.hit_m, IsNearPoint(r.p_in_robot_m, 1e-12));
+    EXPECT_NEAR(beam.range_m, r.range_m, 1e-9);
+    EXPECT_THAT(bearing_rad(image, static_cast<std::size_t>(k)), IsNearAngle(bearing, 1e-9));
+    EXPECT_GE(beam.footprint_m, 0.5 * beam.range_m * image.step_rad * (1.0 - 1e-12));
+    EXPECT_NEAR(beam.normal.norm(), 1.0, 1e-12);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Mountings, RangeImageOfMounting,
+    testing::Values(Mounting{"Upright", -1.5, kDegree, {0.2, 0.1, 0.0, 0.3, 0.0, 0.0}},
+                    Mounting{"Clockwise", 1.5, -kDegree, {0.2, 0.1, 0.0, 0.3, 0.0, 0.0}},
+                    Mounting{"UpsideDown", -1.4, kDegree, {0.2, 0.1, 0.0, 0.3, 0.0, kPi}},
+                    Mounting{"PitchedOver", -1.4, kDegree, {0.2, 0.1, 0.0, 0.3, kPi, 0.0}},
+                    Mounting{"ClockwiseUpsideDown", 1.6, -kDegree, {0.2, 0.1, 0.0, 2.8, 0.0, kPi}},
+                    Mounting{"FullCircle", -kPi, 2 * kDegree, {-0.3, 0.1, 0.0, -3.0, 0.0, 0.0}},
+                    Mounting{"FullCircleClockwiseUpsideDown", 0.4, -2 * kDegree, {-0.3, 0.1, 0.0, -3.0, 0.0, kPi}}),
+    [](const auto& mounting) { return mounting.param.name; });
+
+TEST(RangeImage, NormalsOfWallsPointToTheSensor) {
+  const Position position = test::scan_of(test::uneven_room(), {0.3, -0.2, 0.4});
+  const RangeImage image = image_of(position.sub_scans[0]);
+  int num_across = 0;
+  for (const RangeImage::Beam& beam : image.beams) {
+    ASSERT_GT(beam.range_m, 0.0);
+    num_across += beam.normal.dot(-beam.hit_m) > 0.0 ? 1 : 0;
+  }
+  EXPECT_GE(num_across, 710) << "of 720; corners may be either way";
+}
+
+TEST(RangeImage, OfNoBeamsHasNone) {
+  SubScan sub_scan;
+  sub_scan.angle_step_rad = kDegree;
+  EXPECT_TRUE(image_of(sub_scan).beams.empty());
+  sub_scan.ranges_m = {1.0F};
+  sub_scan.angle_step_rad = 0.0;
+  EXPECT_TRUE(image_of(sub_scan).beams.empty());
+}
+
+}  // namespace
+}  // namespace shapemap
