@@ -22,12 +22,6 @@ constexpr double kScorePerResidual_m = 56.0;
 
 bool better(const PoseHypothesis& a, const PoseHypothesis& b) { return a.score > b.score; }
 
-<<<<<<< HEAD
-bool same_place(const Pose2& a, const Pose2& b) {
-  return (a.translation() - b.translation()).norm() < kSamePlace_m &&
-         angle_between(a.theta_rad, b.theta_rad) < kSameHeading_rad;
-}
-
 PoseHypothesis judged_fit(const ScanView& reference, const ScanView& query, const LineFit& fit,
                           const HypothesisSearchOptions& options) {
   PoseHypothesis pose;
@@ -38,8 +32,6 @@ PoseHypothesis judged_fit(const ScanView& reference, const ScanView& query, cons
   return pose;
 }
 
-=======
->>>>>>> 96f73adff30c075d4b7b45635dcaf0955ca38bf7
 /// The two scans of an alignment and what their hypotheses come from.
 class Search {
  public:

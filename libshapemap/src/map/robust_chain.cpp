@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <deque>
+#include <limits>
 #include <memory>
 
 #include "chain_smoothing.hpp"
@@ -130,13 +130,14 @@ class RobustChain {
   std::vector<PoseHypothesis> borrow_hypotheses(std::size_t link) const {
     std::vector<PoseHypothesis> borrowed;
     if (!in_doubt(links_[link])) return borrowed;
+    HypothesisSearchOptions quick = options_.robust.search;
+    quick.hypotheses.all_rotations_below = -std::numeric_limits<double>::infinity();
     Pose2 far_from_reference;
     for (std::size_t back = 1; back <= static_cast<std::size_t>(options_.smoothing.more_references); ++back) {
       if (link < back || links_[link - back].empty()) break;
       far_from_reference = links_[link - back].front().ref_from_query * far_from_reference;
       const ScanView& far = *scans_[link - back].view;
-      const std::vector<PoseHypothesis> seen_from_far =
-          pose_hypotheses(far, *scans_[link + 1].view, options_.robust.search);
+      const std::vector<PoseHypothesis> seen_from_far = pose_hypotheses(far, *scans_[link + 1].view, quick);
       for (std::size_t k = 0; k < std::min(kBorrowed, seen_from_far.size()); ++k) {
         borrowed.push_back(refined_hypothesis(*scans_[link].view, *scans_[link + 1].view,
                                               inverse(far_from_reference) * seen_from_far[k].ref_from_query,
@@ -183,24 +184,18 @@ class RobustChain {
       outcome.starts_fragment = true;
       if (i > 0) {
         const Choice& choice = choices[i - 1];
-<<<<<<< HEAD
         const std::vector<PoseHypothesis>& link = links_[i - 1];
         outcome.alignment = judged(link, choice.alternative, choice.margin, options_.robust.confidence);
         outcome.reason = outcome.alignment.reason;
-        outcome.starts_fragment = link.empty() || outcome.alignment.probability < options_.smoothing.split_below;
+        const bool improbable = outcome.alignment.probability < options_.smoothing.split_below;
+        if (improbable && outcome.reason.empty()) outcome.reason = "less probable than it takes not to split the map";
+        outcome.starts_fragment = link.empty() || improbable;
         // A pose that is likely to be wrong keeps the map in one piece, and is reported.
         if (!link.empty()) map_from_robot = map_from_robot * link[choice.alternative].ref_from_query;
       }
       if (outcome.starts_fragment) {
         map_from_robot = {};
         result_.fragments.emplace_back();
-=======
-        outcome.alignment = judged(links_[i - 1], choice.alternative, choice.margin, options_.robust.confidence);
-        const bool improbable = outcome.alignment.probability < options_.smoothing.split_below;
-        outcome.starts_fragment = !outcome.alignment.has_pose() || improbable;
-        outcome.reason = outcome.alignment.reason;
-        if (improbable && outcome.reason.empty()) outcome.reason = "less probable than it takes not to split the map";
->>>>>>> 96f73adff30c075d4b7b45635dcaf0955ca38bf7
       }
       outcome.fragment = static_cast<int>(result_.fragments.size()) - 1;
 

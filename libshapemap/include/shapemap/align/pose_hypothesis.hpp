@@ -56,14 +56,12 @@ std::vector<PoseHypothesis> pose_hypotheses(const ScanView& reference, const Sca
 PoseHypothesis refined_hypothesis(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
                                   const HypothesisSearchOptions& options);
 
-<<<<<<< HEAD
 /// Judges a pose as it is.
 PoseHypothesis hypothesis_at(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
                              const HypothesisSearchOptions& options);
-=======
+
 /// Whether two poses are one and the same after refinement.
 bool same_place(const Pose2& a, const Pose2& b);
->>>>>>> 96f73adff30c075d4b7b45635dcaf0955ca38bf7
 
 /// The best of `hypotheses`, one for each place; at most `count`.
 std::vector<PoseHypothesis> best_distinct(std::vector<PoseHypothesis> hypotheses, int count);
