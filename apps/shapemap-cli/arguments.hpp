@@ -56,12 +56,12 @@ struct AlignArguments {
   MapSettings settings;
 };
 
-/// `arguments` are those after the program's name, or after the command's. Nothing is returned when help or the
+/// `typed` is what comes after the program's name, or after the command's. Nothing is returned when help or the
 /// version was asked for and printed. All throw ConfigError for wrong usage.
-std::optional<MapArguments> parse_map_arguments(const std::vector<std::string>& arguments);
-std::optional<InfoArguments> parse_info_arguments(const std::vector<std::string>& arguments);
-std::optional<ConvertArguments> parse_convert_arguments(const std::vector<std::string>& arguments);
-std::optional<AlignArguments> parse_align_arguments(const std::vector<std::string>& arguments);
+std::optional<MapArguments> parse_map_arguments(const std::vector<std::string>& typed);
+std::optional<InfoArguments> parse_info_arguments(const std::vector<std::string>& typed);
+std::optional<ConvertArguments> parse_convert_arguments(const std::vector<std::string>& typed);
+std::optional<AlignArguments> parse_align_arguments(const std::vector<std::string>& typed);
 
 /// The options of `settings` that aligning pairs looks at. The table must not outlive `settings`.
 OptionTable align_option_table(MapSettings& settings);
