@@ -16,6 +16,8 @@ from fit_scores import (
     share_right,
 )
 
+UNKNOWN = np.zeros(2, bool)
+
 
 def hypothesis(score=0.0, **shares):
     return {"agree": 0.3, "unclear": 0.1, "cross_agree": 0.3, "crossed": 0.05, "rms_m": 0.03, "score": score} | shares
@@ -52,13 +54,13 @@ def test_the_probability_grows_with_the_margin():
         right = random.uniform() < 1 / (1 + np.exp(4 - 2 * margin))
         pairs.append(Pair("a.log", 1, [hypothesis(margin), hypothesis(0.0)], np.array([right, False])))
     weights = fitted_probability(pairs)
-    odds = [np.dot(weights, probability_terms(Pair("", 1, [hypothesis(m), hypothesis(0.0)], None))) for m in (1, 3, 6)]
+    odds = [np.dot(weights, probability_terms(Pair("", 1, [hypothesis(m), hypothesis(0.0)], UNKNOWN))) for m in (1, 3, 6)]
     assert odds[0] < odds[1] < odds[2]
 
 
 def test_margins_are_bounded():
-    alone = Pair("", 1, [hypothesis(2.0)], None)
-    tie = Pair("", 1, [hypothesis(2.0), hypothesis(2.0)], None)
+    alone = Pair("", 1, [hypothesis(2.0)], UNKNOWN)
+    tie = Pair("", 1, [hypothesis(2.0), hypothesis(2.0)], UNKNOWN)
     assert probability_terms(alone)[1] == FULL_MARGIN
     assert probability_terms(tie)[1] == LEAST_MARGIN
 

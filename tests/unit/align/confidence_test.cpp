@@ -47,7 +47,7 @@ TEST(PoseCovariance, IsLargeAlongABareCorridorWhateverTheHeading) {
 TEST(PoseCovariance, IsLargeAboutTheCentreOfARoundRoom) {
   const Eigen::Matrix3d round = covariance_in(test::round_room(), {}, short_sighted());
   const Eigen::Matrix3d uneven = covariance_in(test::uneven_room(), {}, short_sighted());
-  EXPECT_LT(worst_deviation_m(round), 0.05);
+  EXPECT_LT(worst_deviation_m(round), 0.10);
   // Polylines of a circle have corners, which seem to hold it a little.
   EXPECT_GT(std::sqrt(round(2, 2)), 2 * kDegree);
   EXPECT_GT(std::sqrt(round(2, 2)), 5 * std::sqrt(uneven(2, 2)));
