@@ -54,7 +54,8 @@ def test_the_probability_grows_with_the_margin():
         right = random.uniform() < 1 / (1 + np.exp(4 - 2 * margin))
         pairs.append(Pair("a.log", 1, [hypothesis(margin), hypothesis(0.0)], np.array([right, False])))
     weights = fitted_probability(pairs)
-    odds = [np.dot(weights, probability_terms(Pair("", 1, [hypothesis(m), hypothesis(0.0)], UNKNOWN))) for m in (1, 3, 6)]
+    asked = [Pair("", 1, [hypothesis(margin), hypothesis(0.0)], UNKNOWN) for margin in (1, 3, 6)]
+    odds = [np.dot(weights, probability_terms(pair)) for pair in asked]
     assert odds[0] < odds[1] < odds[2]
 
 
