@@ -60,6 +60,7 @@ class Search {
       coarse.resize(static_cast<std::size_t>(options_.hypotheses.refined));
     }
     std::vector<PoseHypothesis> fine;
+    fine.reserve(coarse.size());
     for (const PoseHypothesis& pose : coarse) {
       fine.push_back(refined_hypothesis(reference_, query_, pose.ref_from_query, options_));
     }
@@ -86,6 +87,7 @@ class Search {
 std::vector<double> all_rotations(double step_rad) {
   std::vector<double> rotations_rad;
   const auto count = static_cast<int>(std::ceil(2.0 * kPi / step_rad));
+  rotations_rad.reserve(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) rotations_rad.push_back(wrap_angle(k * step_rad));
   return rotations_rad;
 }

@@ -77,6 +77,7 @@ class PaperChain {
     for (const RecentScan& recent : recent_) scans.push_back(moved(recent.scan, ref_from_map * recent.map_from_robot));
     if (options_.align.lcs.target == LcsTarget::kPerScan) return PartialMap(std::move(scans));
     std::vector<Shape> shapes;
+    shapes.reserve(scans.size());
     for (const TargetScan& scan : scans) shapes.push_back(scan.shape);
     return {shapes, true, options_.align.histogram.radius_m};
   }

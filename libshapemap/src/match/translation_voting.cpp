@@ -59,10 +59,12 @@ std::vector<Point2> TranslationVoting::peaks(const ScanView& query, double rotat
   for (const std::size_t cell : cells) {
     if (taken[cell]) continue;
     if (shifts_m.size() == count) break;
-    for (const std::size_t row : {cell - width_, cell, cell + width_}) taken[row - 1] = taken[row] = taken[row + 1] = 1;
-    const auto column = static_cast<double>(cell % width_);
-    const auto row = static_cast<double>(cell / width_);
-    shifts_m.emplace_back((column - middle) * options_.cell_m, (row - middle) * options_.cell_m);
+    for (const std::size_t near : {cell - width_, cell, cell + width_})
+      taken[near - 1] = taken[near] = taken[near + 1] = 1;
+    const std::size_t column = cell % width_;
+    const std::size_t row = cell / width_;
+    shifts_m.emplace_back((static_cast<double>(column) - middle) * options_.cell_m,
+                          (static_cast<double>(row) - middle) * options_.cell_m);
   }
   return shifts_m;
 }
