@@ -20,6 +20,10 @@ constexpr double kUnknown_m = 10.0;
 
 }  // namespace
 
+double lead_of_first(const std::vector<PoseHypothesis>& hypotheses) {
+  return hypotheses.size() > 1 ? hypotheses[0].score - hypotheses[1].score : kFullMargin;
+}
+
 double match_probability(const PoseHypothesis& best, double margin) {
   constexpr double kLeastMargin = 0.05;  // its logarithm stays finite
   constexpr double kLeastAgree = 0.02;

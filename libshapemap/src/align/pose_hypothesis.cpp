@@ -22,6 +22,11 @@ constexpr double kScorePerResidual_m = 56.0;
 
 bool better(const PoseHypothesis& a, const PoseHypothesis& b) { return a.score > b.score; }
 
+bool same_place(const Pose2& a, const Pose2& b) {
+  return (a.translation() - b.translation()).norm() < kSamePlace_m &&
+         angle_between(a.theta_rad, b.theta_rad) < kSameHeading_rad;
+}
+
 PoseHypothesis judged_fit(const ScanView& reference, const ScanView& query, const LineFit& fit,
                           const HypothesisSearchOptions& options) {
   PoseHypothesis pose;
@@ -118,22 +123,21 @@ PoseHypothesis hypothesis_at(const ScanView& reference, const ScanView& query, c
   return judged_fit(reference, query, fit_at(reference, query, ref_from_query, options.line), options);
 }
 
-bool same_place(const Pose2& a, const Pose2& b) {
-  return (a.translation() - b.translation()).norm() < kSamePlace_m &&
-         angle_between(a.theta_rad, b.theta_rad) < kSameHeading_rad;
-}
-
 std::vector<PoseHypothesis> best_distinct(std::vector<PoseHypothesis> hypotheses, int count) {
   std::stable_sort(hypotheses.begin(), hypotheses.end(), better);
   std::vector<PoseHypothesis> distinct;
-  for (PoseHypothesis& pose : hypotheses) {
+  for (const PoseHypothesis& pose : hypotheses) {
     if (distinct.size() == static_cast<std::size_t>(count)) break;
-    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const PoseHypothesis& other) {
-      return same_place(other.ref_from_query, pose.ref_from_query);
-    });
-    if (!known) distinct.push_back(std::move(pose));
+    add_if_new(pose, distinct);
   }
   return distinct;
+}
+
+void add_if_new(const PoseHypothesis& pose, std::vector<PoseHypothesis>& distinct) {
+  const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const PoseHypothesis& other) {
+    return same_place(other.ref_from_query, pose.ref_from_query);
+  });
+  if (!known) distinct.push_back(pose);
 }
 
 }  // namespace shapemap

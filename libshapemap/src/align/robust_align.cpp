@@ -78,8 +78,7 @@ Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chos
 
 Alignment robust_align(const ScanView& reference, const ScanView& query, const RobustOptions& options) {
   const std::vector<PoseHypothesis> poses = pose_hypotheses(reference, query, options.search);
-  const double margin = poses.size() > 1 ? poses[0].score - poses[1].score : kFullMargin;
-  return judged(poses, 0, margin, options.confidence);
+  return judged(poses, 0, lead_of_first(poses), options.confidence);
 }
 
 }  // namespace shapemap

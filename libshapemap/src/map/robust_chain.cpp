@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
+#include <numeric>
 
 #include "chain_smoothing.hpp"
 #include "chains.hpp"
@@ -56,25 +58,26 @@ class RobustChain {
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  static double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
+  /// parallel_for(); the seconds that `work` took, summed over the threads.
+  double timed_for(std::size_t count, const std::function<void(std::size_t)>& work) const {
+    std::vector<double> seconds(count, 0.0);
+    parallel_for(count, options_.chain.threads, [&](std::size_t i) {
+      const auto start = std::chrono::steady_clock::now();
+      work(i);
+      seconds[i] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    });
+    return std::accumulate(seconds.begin(), seconds.end(), 0.0);
   }
 
   /// Views of the positions [first, last), and an entry of the result for each.
   void view_positions(std::size_t first, std::size_t last) {
     std::vector<std::shared_ptr<const ScanView>> views(last - first);
-    std::vector<double> seconds(last - first, 0.0);
-    parallel_for(last - first, options_.chain.threads, [&](std::size_t i) {
-      const auto start = Clock::now();
+    result_.times.shape_s += timed_for(last - first, [&](std::size_t i) {
       views[i] = std::make_shared<ScanView>(view_of(log_.positions[first + i], options_.returns, options_.polylines,
                                                     options_.shape, options_.robust.view));
-      seconds[i] = seconds_since(start);
     });
     for (std::size_t i = first; i < last; ++i) {
       const std::shared_ptr<const ScanView>& view = views[i - first];
-      result_.times.shape_s += seconds[i - first];
       PositionResult outcome;
       outcome.position_index = i;
       outcome.timestamp_s = log_.positions[i].timestamp_s;
@@ -97,31 +100,22 @@ class RobustChain {
     links_.resize(scans_.size() - 1);
     choices_.scores.resize(links_.size());
     choices_.bonus.resize(links_.size());
-    std::vector<double> seconds(count, 0.0);
     // Link i goes from scan i to scan i + 1.
-    parallel_for(count, options_.chain.threads, [&](std::size_t i) {
-      const auto start = Clock::now();
+    result_.times.align_s += timed_for(count, [&](std::size_t i) {
       const std::size_t link = first + i - 1;
       links_[link] = pose_hypotheses(*scans_[link].view, *scans_[link + 1].view, options_.robust.search);
-      seconds[i] += seconds_since(start);
     });
-    parallel_for(count, options_.chain.threads, [&](std::size_t i) {
-      const auto start = Clock::now();
-      borrowed_[i % kBlock] = borrow_hypotheses(first + i - 1);
-      seconds[i] += seconds_since(start);
-    });
+    std::vector<std::vector<PoseHypothesis>> borrowed(count);
+    result_.times.align_s += timed_for(count, [&](std::size_t i) { borrowed[i] = borrow_hypotheses(first + i - 1); });
     for (std::size_t i = 0; i < count; ++i) {
       std::vector<PoseHypothesis>& link = links_[first + i - 1];
-      for (const PoseHypothesis& pose : borrowed_[i]) add_if_new(pose, link);
+      for (const PoseHypothesis& pose : borrowed[i]) add_if_new(pose, link);
       for (const PoseHypothesis& pose : link) choices_.scores[first + i - 1].push_back(pose.score);
       if (link.empty()) choices_.scores[first + i - 1].push_back(0.0);
     }
-    parallel_for(count, options_.chain.threads, [&](std::size_t i) {
-      const auto start = Clock::now();
+    result_.times.align_s += timed_for(count, [&](std::size_t i) {
       if (first + i >= 2) choices_.bonus[first + i - 2] = companion_scores(first + i - 2);
-      seconds[i] += seconds_since(start);
     });
-    for (const double s : seconds) result_.times.align_s += s;
     const std::size_t needed = static_cast<std::size_t>(options_.smoothing.more_references) + 2;
     for (std::size_t i = 0; i + needed < scans_.size(); ++i) scans_[i].view.reset();
   }
@@ -150,18 +144,8 @@ class RobustChain {
     return borrowed;
   }
 
-  /// A pose twice would be its own rival, and leave no margin between the two.
-  static void add_if_new(const PoseHypothesis& pose, std::vector<PoseHypothesis>& link) {
-    const bool known = std::any_of(link.begin(), link.end(), [&](const PoseHypothesis& other) {
-      return same_place(other.ref_from_query, pose.ref_from_query);
-    });
-    if (!known) link.push_back(pose);
-  }
-
   bool in_doubt(const std::vector<PoseHypothesis>& link) const {
-    if (link.empty()) return true;
-    const double margin = link.size() > 1 ? link[0].score - link[1].score : kFullMargin;
-    return match_probability(link.front(), margin) < options_.smoothing.doubt_below;
+    return link.empty() || match_probability(link.front(), lead_of_first(link)) < options_.smoothing.doubt_below;
   }
 
   /// For each pair of alternatives of a link and the next: how the far scan then goes with the near one.
@@ -217,7 +201,6 @@ class RobustChain {
   MapResult& result_;
   std::vector<ChainedScan> scans_;
   std::vector<std::vector<PoseHypothesis>> links_;
-  std::array<std::vector<PoseHypothesis>, kBlock> borrowed_;
   ChoiceChain choices_;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "shapemap/align/pose_hypothesis.hpp"
 
@@ -13,6 +14,9 @@ double match_probability(const PoseHypothesis& best, double margin);
 
 /// The margin that stands for "there is no other place".
 inline constexpr double kFullMargin = 20.0;
+
+/// The margin of the first of distinct hypotheses, best first.
+double lead_of_first(const std::vector<PoseHypothesis>& hypotheses);
 
 /// Covariance of (x, y, theta) from the lines that hold the pose; a direction that none holds gets metres.
 Eigen::Matrix3d pose_covariance(const LineFit& fit);

@@ -60,10 +60,10 @@ PoseHypothesis refined_hypothesis(const ScanView& reference, const ScanView& que
 PoseHypothesis hypothesis_at(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
                              const HypothesisSearchOptions& options);
 
-/// Whether two poses are one and the same after refinement.
-bool same_place(const Pose2& a, const Pose2& b);
-
 /// The best of `hypotheses`, one for each place; at most `count`.
 std::vector<PoseHypothesis> best_distinct(std::vector<PoseHypothesis> hypotheses, int count);
+
+/// Adds `pose` unless its place is known: a place twice would be its own rival, and leave no margin between the two.
+void add_if_new(const PoseHypothesis& pose, std::vector<PoseHypothesis>& distinct);
 
 }  // namespace shapemap
