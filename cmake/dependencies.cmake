@@ -10,6 +10,7 @@ find_package(mrpt-maps 2.5 REQUIRED)  # occupancy grid
 find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs)
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL 5.5 REQUIRED)       # polyline simplification
+find_package(Ceres 2.1 REQUIRED)      # pose graph
 if(SHAPEMAP_BUILD_APPS)
   find_package(CLI11 2.1 REQUIRED)
 endif()

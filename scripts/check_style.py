@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatch
 from pathlib import Path
 
-STAGES = ("core", "scan", "shape", "match", "align", "map", "io")  # a stage includes only itself and those before it
+STAGES = ("core", "scan", "shape", "match", "align", "graph", "map", "io")  # a stage includes only itself and those before it
 FOLDERS = (".ci", "apps", "cmake", "libshapemap", "python", "scripts", "tests")
 SUFFIXES = (".cmake", ".cpp", ".hpp", ".in", ".py", ".sh")
 CPP_SUFFIXES = (".cpp", ".hpp", ".hpp.in")
@@ -39,6 +39,7 @@ CONFINEMENTS = (
     Confinement("MRPT", "mrpt/*", ("libshapemap/src/io/rawlog*.cpp", "libshapemap/src/io/grid_map.cpp")),
     Confinement("OpenCV", "opencv2/*", ("libshapemap/src/io/map_image.cpp",)),
     Confinement("CGAL", "CGAL/*", ("libshapemap/src/shape/simplify.cpp",)),
+    Confinement("Ceres", "ceres/*", ("libshapemap/src/graph/pose_graph.cpp",)),
     Confinement(
         "nlohmann-json",
         "nlohmann/*",

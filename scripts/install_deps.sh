@@ -21,7 +21,7 @@ packages=(
   build-essential cmake ninja-build ccache
   libmrpt-obs-dev libmrpt-maps-dev
   mrpt-apps mrpt-common # for the tests: rawlog-edit, carmen2rawlog and sample logs
-  libopencv-dev libcgal-dev libeigen3-dev libnanoflann-dev nlohmann-json3-dev zlib1g-dev
+  libopencv-dev libcgal-dev libceres-dev libeigen3-dev libnanoflann-dev nlohmann-json3-dev zlib1g-dev
   libcli11-dev libgtest-dev libgmock-dev libbenchmark-dev
   python3 python3-venv ca-certificates # pip needs the certificates
 )

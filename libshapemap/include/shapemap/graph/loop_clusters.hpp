@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "shapemap/core/options.hpp"
+#include "shapemap/core/pose2.hpp"
+
+namespace shapemap {
+
+/// Node `b` may be at this place in the frame of node `a`, though the chain does not say so.
+struct LoopHypothesis {
+  std::size_t a = 0;
+  std::size_t b = 0;  ///< the later one
+  Pose2 a_from_b;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+  double log_odds = 0.0;  ///< that it is right, by the two scans alone
+};
+
+/// Hypotheses that say the same: several scans of one stretch of the way lie so about several of another.
+struct LoopCluster {
+  std::vector<LoopHypothesis> members;  ///< most probable first
+  double strength = 0.0;                ///< log odds of the best member of each node, summed
+  std::size_t num_a = 0;                ///< distinct nodes of the one stretch
+  std::size_t num_b = 0;
+};
+
+struct ClusterOptions {
+  int window = 4;
+  double same_m = 0.40;
+  double same_rad = 6 * kDegree;
+  int least_nodes = 2;
+};
+
+/// `map_from_node` is the chain, of which only short pieces are trusted: pieces with the same `piece_of_node`. Strongest
+/// first. Hypotheses that no other one supports make no cluster.
+std::vector<LoopCluster> loop_clusters(const std::vector<LoopHypothesis>& hypotheses,
+                                       const std::vector<Pose2>& map_from_node,
+                                       const std::vector<std::size_t>& piece_of_node, const ClusterOptions& options);
+
+}  // namespace shapemap

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "shapemap/shape/scan_view.hpp"
+
+/// Which places look alike, whatever the heading.
+namespace shapemap {
+
+/// How often surfaces of a scan lie how far from each other, and turned how against each other and against the line
+/// between them: nothing of that changes when the scan is turned or shifted. The square root of the counts, of length 1.
+inline constexpr std::size_t kSignatureDistances = 12;
+inline constexpr std::size_t kSignatureAngles = 8;
+inline constexpr std::size_t kSignatureBins = kSignatureDistances * kSignatureAngles * kSignatureAngles;
+using PlaceSignature = std::array<float, kSignatureBins>;
+
+PlaceSignature place_signature(const ScanView& view);
+
+/// 0: nothing alike, 1: the same. (Bhattacharyya's coefficient.)
+double likeness(const PlaceSignature& a, const PlaceSignature& b);
+
+struct LikelyPlace {
+  std::size_t node = 0;
+  double likeness = 0.0;
+};
+
+/// All signatures, by node.
+class PlaceIndex {
+ public:
+  void add(const PlaceSignature& signature) { signatures_.push_back(signature); }
+  std::size_t size() const { return signatures_.size(); }
+
+  /// The `count` nodes below `end` that look most like `node`, best first.
+  std::vector<LikelyPlace> most_alike(std::size_t node, std::size_t end, std::size_t count) const;
+
+ private:
+  std::vector<PlaceSignature> signatures_;
+};
+
+}  // namespace shapemap

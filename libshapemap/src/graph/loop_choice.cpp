@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "loop_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace shapemap {
+namespace {
+
+/// More members of a cluster hardly hold it better.
+constexpr std::size_t kMembersUsed = 8;
+constexpr double kLoopLoss = 2.0;
+
+/// Between pieces that nothing joins: no scan sees so far.
+constexpr double kApart_m = 1e4;
+
+/// The chain's probabilities allow for scans of different places, which neighbours are not.
+constexpr double kPriorOfLinks = 2.0;
+
+constexpr double kSure = 0.9;
+constexpr double kLeastStep_m = 0.3;
+
+/// Nineteen of twenty sure steps are shorter.
+double usual_step_m(const std::vector<ChainLink>& links) {
+  std::vector<double> steps_m;
+  for (const ChainLink& link : links) {
+    if (link.exists() && link.probability > kSure) {
+      steps_m.push_back(link.alternatives.front().a_from_b.translation().norm());
+    }
+  }
+  if (steps_m.empty()) return kLeastStep_m;
+  std::sort(steps_m.begin(), steps_m.end());
+  return std::max(kLeastStep_m, steps_m[steps_m.size() * 95 / 100]);
+}
+
+/// The best member of each node.
+std::vector<PoseConstraint> constraints_of(const LoopCluster& cluster) {
+  std::vector<PoseConstraint> result;
+  std::set<std::size_t> of_a;
+  std::set<std::size_t> of_b;
+  for (const LoopHypothesis& member : cluster.members) {
+    if (result.size() == kMembersUsed) break;
+    if (of_a.count(member.a) != 0 || of_b.count(member.b) != 0) continue;
+    of_a.insert(member.a);
+    of_b.insert(member.b);
+    result.push_back({member.a, member.b, member.a_from_b, member.covariance, kLoopLoss});
+  }
+  return result;
+}
+
+}  // namespace
+
+LoopProblem::LoopProblem(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<ChainLink>& links,
+                         const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
+                         const LoopClosingOptions& options, int threads)
+    : links_(links),
+      clusters_(clusters),
+      options_(options),
+      evidence_(views, visibility, threads),
+      num_nodes_(views.size()),
+      usual_step_m_(usual_step_m(links)) {
+  for (const LoopCluster& cluster : clusters) loop_constraints_.push_back(constraints_of(cluster));
+}
+
+LoopChoice LoopProblem::chain_alone() {
+  LoopChoice choice;
+  choice.link_choice.assign(links_.size(), kCut);
+  choice.accepted.assign(clusters_.size(), 0);
+  choice.refused_off.assign(clusters_.size(), Pose2{kApart_m, kApart_m, 0.0});
+  choice.map_from_node.resize(num_nodes_);
+  double next_piece_m = 0.0;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (links_[i].exists()) {
+      choice.link_choice[i] = 0;
+      choice.map_from_node[i + 1] = choice.map_from_node[i] * links_[i].alternatives.front().a_from_b;
+    } else {
+      next_piece_m += kApart_m;
+      choice.map_from_node[i + 1] = {next_piece_m, 0.0, 0.0};
+    }
+  }
+  rate(choice);
+  return choice;
+}
+
+std::vector<PoseConstraint> LoopProblem::constraints(const LoopChoice& choice) const {
+  std::vector<PoseConstraint> all;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (choice.link_choice[i] == kCut) continue;
+    const ChainLink::Alternative& link = links_[i].alternatives[static_cast<std::size_t>(choice.link_choice[i])];
+    all.push_back({i, i + 1, link.a_from_b, link.covariance, 0.0});
+  }
+  for (std::size_t k = 0; k < clusters_.size(); ++k) {
+    if (choice.accepted[k]) all.insert(all.end(), loop_constraints_[k].begin(), loop_constraints_[k].end());
+  }
+  return all;
+}
+
+void LoopProblem::solve(LoopChoice& choice) const {
+  constexpr int kIterations = 20;
+  PoseGraphSolution solution = solve_pose_graph(choice.map_from_node, constraints(choice), kIterations);
+  choice.map_from_node = std::move(solution.map_from_node);
+  choice.chi_square = solution.chi_square;
+}
+
+double LoopProblem::worth(std::size_t cluster) const {
+  return std::min(clusters_[cluster].strength, options_.trust_cap);
+}
+
+/// Of alternatives that are not the best, of links that are cut, and of unusual steps.
+double LoopProblem::cost_of_links(const LoopChoice& choice) const {
+  double cost = 0.0;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const ChainLink& link = links_[i];
+    if (!link.exists() || link.probability >= options_.doubt_below) continue;
+    if (choice.link_choice[i] == kCut) {
+      const double p = std::clamp(link.probability, 1e-3, 1.0 - 1e-6);
+      cost += std::max(0.0, std::log(p / (1.0 - p)) + kPriorOfLinks);
+    } else {
+      const auto taken = static_cast<std::size_t>(choice.link_choice[i]);
+      cost += link.alternatives.front().score - link.alternatives[taken].score;
+    }
+    const double step_m =
+        (choice.map_from_node[i].translation() - choice.map_from_node[i + 1].translation()).norm();
+    const double steps = std::min(step_m / usual_step_m_ - 1.0, 10.0);
+    cost += options_.step_penalty * std::max(0.0, steps);
+  }
+  return cost;
+}
+
+void LoopProblem::rate(LoopChoice& choice) {
+  choice.value = evidence_.of(choice.map_from_node) - 0.5 * choice.chi_square - cost_of_links(choice);
+  for (std::size_t k = 0; k < clusters_.size(); ++k) {
+    if (choice.accepted[k]) choice.value += worth(k);
+  }
+}
+
+Pose2 LoopProblem::off(const LoopChoice& choice, std::size_t cluster) const {
+  const PoseConstraint& best = best_member(cluster);
+  return inverse(best.a_from_b) * (inverse(choice.map_from_node[best.a]) * choice.map_from_node[best.b]);
+}
+
+}  // namespace shapemap

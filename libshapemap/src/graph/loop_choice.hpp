@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "shapemap/graph/loop_closing.hpp"
+#include "shapemap/graph/map_evidence.hpp"
+#include "shapemap/graph/pose_graph.hpp"
+
+namespace shapemap {
+
+/// What has been decided about loops and links, and the map that follows.
+struct LoopChoice {
+  std::vector<int> link_choice;
+  std::vector<char> accepted;      ///< per cluster
+  std::vector<Pose2> refused_off;  ///< per cluster: how far off the map was when it was last refused
+  std::vector<Pose2> map_from_node;
+  double chi_square = 0.0;
+  double value = 0.0;
+};
+
+/// Maps that follow from choices, and what they are worth.
+class LoopProblem {
+ public:
+  LoopProblem(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<ChainLink>& links,
+              const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
+              const LoopClosingOptions& options, int threads);
+
+  /// The chain by itself, without loops. Pieces that nothing joins lie far apart.
+  LoopChoice chain_alone();
+
+  /// Poses from the choices made, starting from those there are.
+  void solve(LoopChoice& choice) const;
+  /// Sets `value`, which costs much more than to solve.
+  void rate(LoopChoice& choice);
+
+  /// How far the map is off what the best member of a cluster says.
+  Pose2 off(const LoopChoice& choice, std::size_t cluster) const;
+  std::vector<PoseConstraint> constraints(const LoopChoice& choice) const;
+  const PoseConstraint& best_member(std::size_t cluster) const { return loop_constraints_[cluster].front(); }
+  /// What closing a loop is worth by itself.
+  double worth(std::size_t cluster) const;
+
+  std::size_t num_nodes() const { return num_nodes_; }
+
+ private:
+  double cost_of_links(const LoopChoice& choice) const;
+
+  const std::vector<ChainLink>& links_;
+  const std::vector<LoopCluster>& clusters_;
+  const LoopClosingOptions& options_;
+  MapEvidence evidence_;
+  std::size_t num_nodes_;
+  double usual_step_m_;
+  std::vector<std::vector<PoseConstraint>> loop_constraints_;
+};
+
+}  // namespace shapemap

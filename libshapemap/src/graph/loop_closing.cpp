@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/graph/loop_closing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "loop_choice.hpp"
+
+namespace shapemap {
+namespace {
+
+/// A map that is nearer than this to what a loop says agrees with it.
+constexpr double kAgrees_m = 0.35;
+constexpr double kAgrees_rad = 4 * kDegree;
+
+/// And one that is farther off contradicts it.
+constexpr double kContradicts_m = 1.0;
+constexpr double kContradicts_rad = 10 * kDegree;
+
+constexpr double kLeastStrength = 4.0;
+constexpr double kStrong = 10.0;
+constexpr int kRoundsOfClosing = 3;
+constexpr int kRoundsOfRepair = 4;
+constexpr std::size_t kDoubtfulPerLoop = 4;
+
+/// A change is not pursued when the map is so much worse before loops follow.
+constexpr double kHopelessLink = 60.0;
+constexpr double kHopelessLoop = 400.0;
+
+bool within(const Pose2& off, double metres, double radians) {
+  return off.translation().norm() < metres && std::abs(off.theta_rad) < radians;
+}
+
+class LoopCloser {
+ public:
+  LoopCloser(LoopProblem& problem, const std::vector<ChainLink>& links, const std::vector<LoopCluster>& clusters,
+             const LoopClosingOptions& options, RunObserver& observer)
+      : problem_(problem), links_(links), clusters_(clusters), options_(options), observer_(observer) {}
+
+  LoopChoice run() {
+    LoopChoice best = problem_.chain_alone();
+    close(best);
+    repair(best);
+    return best;
+  }
+
+ private:
+  /// Closes the loops that the map agrees with as it is.
+  bool close_agreeing(LoopChoice& map) {
+    LoopChoice trial = map;
+    bool any = false;
+    for (std::size_t k = 0; k < clusters_.size(); ++k) {
+      if (trial.accepted[k] || clusters_[k].strength < kLeastStrength) continue;
+      if (!within(problem_.off(trial, k), kAgrees_m, kAgrees_rad)) continue;
+      trial.accepted[k] = 1;
+      any = true;
+    }
+    if (!any) return false;
+    problem_.solve(trial);
+    problem_.rate(trial);
+    if (trial.value < map.value) return false;
+    map = std::move(trial);
+    return true;
+  }
+
+  /// Brings two pieces that nothing joins yet to where a loop wants them.
+  void join_pieces(LoopChoice& map, std::size_t k) const {
+    const PoseConstraint& loop = problem_.best_member(k);
+    const std::vector<std::size_t> piece = connected_parts(problem_.num_nodes(), problem_.constraints(map));
+    if (piece[loop.a] == piece[loop.b]) return;
+    const Pose2 move = map.map_from_node[loop.a] * loop.a_from_b * inverse(map.map_from_node[loop.b]);
+    for (std::size_t n = 0; n < problem_.num_nodes(); ++n) {
+      if (piece[n] == piece[loop.b]) map.map_from_node[n] = move * map.map_from_node[n];
+    }
+  }
+
+  bool try_loop(LoopChoice& map, std::size_t k) {
+    LoopChoice trial = map;
+    join_pieces(trial, k);
+    trial.accepted[k] = 1;
+    problem_.solve(trial);
+    const double without_scans = problem_.worth(k) - 0.5 * (trial.chi_square - map.chi_square);
+    if (without_scans < -options_.trust_cap) return false;
+    problem_.rate(trial);
+    if (trial.value < map.value + options_.least_gain) return false;
+    map = std::move(trial);
+    return true;
+  }
+
+  /// Closes all loops that gain, strongest first.
+  void close(LoopChoice& map) {
+    bool again = true;
+    for (int round = 0; again && round < kRoundsOfClosing; ++round) {
+      again = false;
+      close_all_agreeing(map);
+      for (std::size_t k = 0; k < clusters_.size() && observer_.keep_going(); ++k) {
+        if (map.accepted[k] || clusters_[k].strength < kLeastStrength) continue;
+        const Pose2 off = problem_.off(map, k);
+        if (within(inverse(map.refused_off[k]) * off, kAgrees_m, kAgrees_rad)) continue;
+        if (try_loop(map, k)) {
+          again = true;
+          close_all_agreeing(map);
+        } else {
+          map.refused_off[k] = off;
+        }
+      }
+    }
+  }
+
+  void close_all_agreeing(LoopChoice& map) {
+    while (observer_.keep_going() && close_agreeing(map)) {
+    }
+  }
+
+  /// Moves what the chain has after link `i`; loops that then are contradicted are given up.
+  void swing(LoopChoice& map, std::size_t i, const Pose2& move) const {
+    std::size_t n = i + 1;
+    do {
+      map.map_from_node[n] = move * map.map_from_node[n];
+      ++n;
+    } while (n < problem_.num_nodes() && map.link_choice[n - 1] != kCut);
+    for (std::size_t k = 0; k < clusters_.size(); ++k) {
+      if (map.accepted[k] && !within(problem_.off(map, k), kContradicts_m, kContradicts_rad)) map.accepted[k] = 0;
+    }
+  }
+
+  /// Closes the loops of a changed map, and takes it if it then is better.
+  bool better_when_closed(LoopChoice& trial, LoopChoice& best, double hopeless) {
+    problem_.solve(trial);
+    problem_.rate(trial);
+    close_all_agreeing(trial);
+    if (trial.value < best.value - hopeless) return false;
+    close(trial);
+    if (trial.value < best.value + options_.least_gain) return false;
+    best = std::move(trial);
+    return true;
+  }
+
+  bool try_alternatives(LoopChoice& best, std::size_t i) {
+    const auto count = static_cast<int>(links_[i].alternatives.size());
+    for (int choice = 0; choice < count && observer_.keep_going(); ++choice) {
+      if (choice == best.link_choice[i]) continue;
+      LoopChoice trial = best;
+      trial.link_choice[i] = choice;
+      const Pose2& a_from_b = links_[i].alternatives[static_cast<std::size_t>(choice)].a_from_b;
+      swing(trial, i, trial.map_from_node[i] * a_from_b * inverse(trial.map_from_node[i + 1]));
+      if (better_when_closed(trial, best, kHopelessLink)) return true;
+    }
+    return false;
+  }
+
+  /// A strong loop that does not fit: one of the alignments along it may be wrong.
+  bool try_cutting_for(LoopChoice& best, std::size_t k) {
+    const PoseConstraint& loop = problem_.best_member(k);
+    std::vector<std::size_t> doubtful = doubtful_links(loop.a, loop.b, kDoubtfulPerLoop);
+    for (const std::size_t i : doubtful) {
+      if (best.link_choice[i] == kCut || !observer_.keep_going()) continue;
+      LoopChoice trial = best;
+      trial.link_choice[i] = kCut;
+      swing(trial, i, trial.map_from_node[loop.a] * loop.a_from_b * inverse(trial.map_from_node[loop.b]));
+      trial.accepted[k] = 1;
+      if (better_when_closed(trial, best, kHopelessLoop)) return true;
+    }
+    return false;
+  }
+
+  /// The least probable of the links from node `first` to node `last`.
+  std::vector<std::size_t> doubtful_links(std::size_t first, std::size_t last, std::size_t count) const {
+    std::vector<std::size_t> doubtful;
+    for (std::size_t i = first; i < last; ++i) {
+      if (links_[i].exists() && links_[i].probability < options_.doubt_below) doubtful.push_back(i);
+    }
+    std::stable_sort(doubtful.begin(), doubtful.end(),
+                     [&](std::size_t i, std::size_t j) { return links_[i].probability < links_[j].probability; });
+    doubtful.resize(std::min(doubtful.size(), count));
+    return doubtful;
+  }
+
+  void repair(LoopChoice& best) {
+    bool better = true;
+    for (int round = 0; better && round < kRoundsOfRepair; ++round) {
+      better = false;
+      int left = options_.repairs;
+      for (std::size_t k = 0; k < clusters_.size() && left > 0; ++k) {
+        if (best.accepted[k] || clusters_[k].strength < kStrong) continue;
+        --left;
+        better = try_cutting_for(best, k) || better;
+      }
+      for (const std::size_t i : doubtful_links(0, links_.size(), static_cast<std::size_t>(options_.repairs))) {
+        better = try_alternatives(best, i) || better;
+      }
+    }
+  }
+
+  LoopProblem& problem_;
+  const std::vector<ChainLink>& links_;
+  const std::vector<LoopCluster>& clusters_;
+  const LoopClosingOptions& options_;
+  RunObserver& observer_;
+};
+
+}  // namespace
+
+LoopSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<ChainLink>& links,
+                         const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
+                         const LoopClosingOptions& options, int threads, RunObserver& observer) {
+  LoopProblem problem(views, links, clusters, visibility, options, threads);
+  LoopChoice best = LoopCloser(problem, links, clusters, options, observer).run();
+  LoopSolution solution;
+  solution.component = connected_parts(views.size(), problem.constraints(best));
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    if (best.accepted[k]) solution.accepted.push_back(k);
+  }
+  solution.map_from_node = std::move(best.map_from_node);
+  solution.link_choice = std::move(best.link_choice);
+  solution.value = best.value;
+  return solution;
+}
+
+}  // namespace shapemap

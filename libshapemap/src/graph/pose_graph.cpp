@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/graph/pose_graph.hpp"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace shapemap {
+namespace {
+
+using Parameters = std::array<double, 3>;  // x, y, theta; the angle is not wrapped in between
+
+Eigen::Matrix3d square_root_information(const Eigen::Matrix3d& covariance) {
+  const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
+  if (llt.info() != Eigen::Success) throw std::invalid_argument("a covariance is not positive definite");
+  return llt.matrixL().solve(Eigen::Matrix3d::Identity());
+}
+
+/// Weighted difference of a relative pose and the measured one, in the frame of the first node.
+class RelativePoseError : public ceres::SizedCostFunction<3, 3, 3> {
+ public:
+  explicit RelativePoseError(const PoseConstraint& constraint)
+      : measured_(constraint.a_from_b), root_(square_root_information(constraint.covariance)) {}
+
+  bool Evaluate(const double* const* nodes, double* residuals, double** jacobians) const override {
+    const double* a = nodes[0];
+    const double* b = nodes[1];
+    const double cos_a = std::cos(a[2]);
+    const double sin_a = std::sin(a[2]);
+    const double dx = b[0] - a[0];
+    const double dy = b[1] - a[1];
+    const Eigen::Vector3d error(cos_a * dx + sin_a * dy - measured_.x_m, -sin_a * dx + cos_a * dy - measured_.y_m,
+                                wrap_angle(b[2] - a[2] - measured_.theta_rad));
+    Eigen::Map<Eigen::Vector3d>(residuals, 3) = root_ * error;
+    if (jacobians == nullptr) return true;
+    using Jacobian = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    Eigen::Matrix3d by_b;
+    by_b << cos_a, sin_a, 0.0, -sin_a, cos_a, 0.0, 0.0, 0.0, 1.0;
+    if (jacobians[0] != nullptr) {
+      Eigen::Matrix3d by_a = -by_b;
+      by_a(0, 2) = -sin_a * dx + cos_a * dy;
+      by_a(1, 2) = -cos_a * dx - sin_a * dy;
+      Eigen::Map<Jacobian> out(jacobians[0]);
+      out = root_ * by_a;
+    }
+    if (jacobians[1] != nullptr) {
+      Eigen::Map<Jacobian> out(jacobians[1]);
+      out = root_ * by_b;
+    }
+    return true;
+  }
+
+ private:
+  Pose2 measured_;
+  Eigen::Matrix3d root_;
+};
+
+void check(std::size_t num_nodes, const PoseConstraint& constraint) {
+  if (constraint.a >= num_nodes || constraint.b >= num_nodes || constraint.a == constraint.b) {
+    throw std::invalid_argument("a constraint joins nodes that do not exist, or one with itself");
+  }
+}
+
+ceres::Solver::Options solver_options(int max_iterations) {
+  ceres::Solver::Options options;
+  // One thread and Eigen's solver: no other makes the same bits on every run.
+  options.num_threads = 1;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
+  options.max_num_iterations = max_iterations;
+  options.function_tolerance = 1e-5;
+  options.logging_type = ceres::SILENT;
+  return options;
+}
+
+}  // namespace
+
+std::vector<std::size_t> connected_parts(std::size_t num_nodes, const std::vector<PoseConstraint>& constraints) {
+  std::vector<std::size_t> part(num_nodes);
+  std::iota(part.begin(), part.end(), std::size_t{0});
+  const auto root = [&](std::size_t node) {
+    while (part[node] != node) node = part[node] = part[part[node]];
+    return node;
+  };
+  for (const PoseConstraint& constraint : constraints) {
+    check(num_nodes, constraint);
+    const std::size_t a = root(constraint.a);
+    const std::size_t b = root(constraint.b);
+    part[std::max(a, b)] = std::min(a, b);
+  }
+  for (std::size_t node = 0; node < num_nodes; ++node) part[node] = root(node);
+  return part;
+}
+
+PoseGraphSolution solve_pose_graph(const std::vector<Pose2>& map_from_node,
+                                   const std::vector<PoseConstraint>& constraints, int max_iterations) {
+  PoseGraphSolution solution{map_from_node, 0.0};
+  if (constraints.empty()) return solution;
+  const std::vector<std::size_t> part = connected_parts(map_from_node.size(), constraints);
+  std::vector<Parameters> nodes;
+  nodes.reserve(map_from_node.size());
+  for (const Pose2& pose : map_from_node) nodes.push_back({pose.x_m, pose.y_m, pose.theta_rad});
+
+  ceres::Problem problem;
+  for (const PoseConstraint& constraint : constraints) {
+    ceres::LossFunction* loss =
+        constraint.loss_scale > 0.0 ? new ceres::CauchyLoss(constraint.loss_scale) : nullptr;  // the problem owns both
+    problem.AddResidualBlock(new RelativePoseError(constraint), loss, nodes[constraint.a].data(),
+                             nodes[constraint.b].data());
+  }
+  for (std::size_t node = 0; node < nodes.size(); ++node) {
+    if (part[node] == node && problem.HasParameterBlock(nodes[node].data())) {
+      problem.SetParameterBlockConstant(nodes[node].data());
+    }
+  }
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver_options(max_iterations), &problem, &summary);
+  for (std::size_t node = 0; node < nodes.size(); ++node) {
+    solution.map_from_node[node] = {nodes[node][0], nodes[node][1], wrap_angle(nodes[node][2])};
+  }
+  solution.chi_square = 2.0 * summary.final_cost;
+  return solution;
+}
+
+double squared_error(const PoseConstraint& constraint, const std::vector<Pose2>& map_from_node) {
+  const Pose2& a = map_from_node.at(constraint.a);
+  const Pose2& b = map_from_node.at(constraint.b);
+  const Pose2 found = inverse(a) * b;
+  const Eigen::Vector3d error(found.x_m - constraint.a_from_b.x_m, found.y_m - constraint.a_from_b.y_m,
+                              wrap_angle(found.theta_rad - constraint.a_from_b.theta_rad));
+  return error.dot(constraint.covariance.llt().solve(error));
+}
+
+}  // namespace shapemap
