@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One alignment of the paper's method with the coordinates behind its indices, and which one a figure should show."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from shapemap_sim.poses import Array, compose, inverse, rotate, transform
+
+from .trace import Trace
+
+STAGES = ("lcs", "spread", "segments", "kept")
+RIGHT_M = 0.20  # a correspondence whose points are nearer at the reference pose is right
+
+
+@dataclass(frozen=True)
+class Match:
+    """All in the reference's frame [m]. `target_scan` and `query_scan` `[n, 2]` are the returns; the query is turned by
+    the winning rotation and not moved. `pairs[stage]` `[n, 2, 2]` are target and query point of each correspondence."""
+
+    reference: int
+    query: int
+    targets: list[int]
+    rotation_rad: float
+    target_scan: Array
+    query_scan: Array
+    pairs: dict[str, Array]
+    segments: list[Array]
+    ref_from_query: Array  # by shape, before ICP
+    overlap_ratio: float
+
+    @property
+    def aligned_query_scan(self) -> Array:
+        """The query's returns where the segment-wise translation puts them."""
+        return self.query_scan + self.ref_from_query[:2]
+
+    def num_right(self, stage: str, true_ref_from_query: Array) -> int:
+        """How many correspondences join points that truly are one place."""
+        pairs = self.pairs[stage]
+        at_truth = transform(true_ref_from_query, rotate(pairs[:, 1], -self.rotation_rad))
+        return int((np.hypot(*(at_truth - pairs[:, 0]).T) < RIGHT_M).sum())
+
+
+def match_of(trace: Trace, query: int) -> Match:
+    """The alignment of position `query`, which must have found a correspondence."""
+    record = trace.alignments[query]
+    rotation_rad = float(record["rotations"][record["best_rotation"]]["rotation_rad"])
+    corrections = {t["position"]: np.array(t["robot_from_sub_scan"]) for t in record["targets"]}
+    ref_from_robot = {t["position"]: np.array(t["ref_from_robot"]) for t in record["targets"]}
+    target_points = {
+        i: transform(ref_from_robot[i], trace.positions[i].corrected_points(corrections[i])) for i in ref_from_robot
+    }
+    scans = [transform(ref_from_robot[i], trace.positions[i].corrected_scan(corrections[i])) for i in ref_from_robot]
+    turned = rotate(trace.positions[query].points[:, :2], rotation_rad)
+
+    def coordinates(names: list[list[int]]) -> Array:
+        pairs = [(target_points[scan][point], turned[k]) for k, scan, point in names]
+        return np.array(pairs).reshape(-1, 2, 2)
+
+    segments = [coordinates(segment) for segment in record["segments"]]
+    stages: dict[str, Any] = {stage: coordinates(record[stage]) for stage in ("lcs", "spread", "kept")}
+    stages["segments"] = np.concatenate([coordinates([]), *segments])
+    return Match(
+        reference=record["reference"],
+        query=query,
+        targets=list(ref_from_robot),
+        rotation_rad=rotation_rad,
+        target_scan=np.concatenate(scans),
+        query_scan=rotate(np.concatenate(trace.positions[query].scan_points), rotation_rad),
+        pairs=stages,
+        segments=segments,
+        ref_from_query=np.array(record["shape_ref_from_query"]),
+        overlap_ratio=float(record["overlap_ratio"]),
+    )
+
+
+def step_error_m(record: dict[str, Any], key: str, reference: dict[int, Array]) -> float:
+    """How far the pose `key` of an alignment is from the reference; infinite without one of the two."""
+    i, j = record["reference"], record["query"]
+    if record[key] is None or i not in reference or j not in reference:
+        return float("inf")
+    truth = compose(inverse(reference[i]), reference[j])
+    return float(np.hypot(*(np.array(record[key]) - truth)[:2]))
+
+
+def _best(trace: Trace, value: Callable[[dict[str, Any]], float]) -> int | None:
+    """The query of the alignment with the largest value; of equals the first."""
+    found = [record for record in trace.alignments.values() if record["best_rotation"] is not None]
+    return max(found, key=value)["query"] if found else None
+
+
+def hard_pair(pairwise: Trace, reference: dict[int, Array]) -> int | None:
+    """The query that the scan before it helps least: for figures 2 and 3. With reference poses that is where the share
+    of right correspondences is smallest, without them where the aligned scans overlap least."""
+
+    def hardness(record: dict[str, Any]) -> float:
+        i, j = record["reference"], record["query"]
+        if i not in reference or j not in reference:
+            return -float(record["overlap_ratio"])
+        match = match_of(pairwise, j)
+        right = match.num_right("lcs", compose(inverse(reference[i]), reference[j]))
+        return -right / max(1, len(match.pairs["lcs"]))
+
+    return _best(pairwise, hardness)
+
+
+def filtered_pair(pairwise: Trace, reference: dict[int, Array]) -> int | None:
+    """The query that shows best what the filters do: most correspondences dropped, and aligned right."""
+
+    def dropped(record: dict[str, Any]) -> float:
+        wrong = bool(reference) and step_error_m(record, "shape_ref_from_query", reference) > RIGHT_M
+        refused = record["status"] != "ok"
+        return len(record["lcs"]) - len(record["kept"]) - 1e6 * (wrong or refused)
+
+    return _best(pairwise, dropped)
