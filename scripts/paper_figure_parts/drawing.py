@@ -30,7 +30,7 @@ def new_figure(title: str, width: float = 6.0, height: float = 5.0) -> tuple[Fig
 
 
 def in_cm(axes: Axes) -> None:
-    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_aspect("equal", adjustable="box")
     axes.set_xlabel("x [cm]")
     axes.set_ylabel("y [cm]")
 

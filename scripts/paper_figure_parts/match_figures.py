@@ -45,7 +45,7 @@ def right_pairs(match: Match, truth: Array) -> Array:
 
 def correspondence_figure(match: Match, name: str, stage: str, truth: Array | None) -> Figure:
     """3a, 4a, 4b: the correspondences at one stage."""
-    stages = {"lcs": "by LCS", "kept": "after the filters"}
+    stages = {"lcs": "by LCS", "segments": "after the filters"}
     figure, axes = new_figure(
         f"{name} {listed(match.targets)} and {match.query}, {stages[stage]}: {right_text(match, stage, truth)}"
     )

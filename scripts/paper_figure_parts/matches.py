@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -78,13 +78,9 @@ def match_of(trace: Trace, query: int) -> Match:
     )
 
 
-def step_error_m(record: dict[str, Any], key: str, reference: dict[int, Array]) -> float:
-    """How far the pose `key` of an alignment is from the reference; infinite without one of the two."""
-    i, j = record["reference"], record["query"]
-    if record[key] is None or i not in reference or j not in reference:
-        return float("inf")
-    truth = compose(inverse(reference[i]), reference[j])
-    return float(np.hypot(*(np.array(record[key]) - truth)[:2]))
+def true_step(reference: Mapping[int, Array], i: int, j: int) -> Array | None:
+    """The reference pose of j in the frame of i, if both are known."""
+    return compose(inverse(reference[i]), reference[j]) if i in reference and j in reference else None
 
 
 def _best(trace: Trace, value: Callable[[dict[str, Any]], float]) -> int | None:
@@ -93,27 +89,31 @@ def _best(trace: Trace, value: Callable[[dict[str, Any]], float]) -> int | None:
     return max(found, key=value)["query"] if found else None
 
 
-def hard_pair(pairwise: Trace, reference: dict[int, Array]) -> int | None:
+def hard_pair(pairwise: Trace, reference: Mapping[int, Array]) -> int | None:
     """The query that the scan before it helps least: for figures 2 and 3. With reference poses that is where the share
     of right correspondences is smallest, without them where the aligned scans overlap least."""
 
     def hardness(record: dict[str, Any]) -> float:
-        i, j = record["reference"], record["query"]
-        if i not in reference or j not in reference:
+        truth = true_step(reference, record["reference"], record["query"])
+        if truth is None:
             return -float(record["overlap_ratio"])
-        match = match_of(pairwise, j)
-        right = match.num_right("lcs", compose(inverse(reference[i]), reference[j]))
-        return -right / max(1, len(match.pairs["lcs"]))
+        match = match_of(pairwise, record["query"])
+        return -match.num_right("lcs", truth) / max(1, len(match.pairs["lcs"]))
 
     return _best(pairwise, hardness)
 
 
-def filtered_pair(pairwise: Trace, reference: dict[int, Array]) -> int | None:
-    """The query that shows best what the filters do: most correspondences dropped, and aligned right."""
+def filtered_pair(pairwise: Trace, reference: Mapping[int, Array]) -> int | None:
+    """The query that shows best what the filters do, for figure 4. With reference poses that is where they drop most
+    correspondences that are wrong and the pose is right, without them where they drop most."""
 
     def dropped(record: dict[str, Any]) -> float:
-        wrong = bool(reference) and step_error_m(record, "shape_ref_from_query", reference) > RIGHT_M
-        refused = record["status"] != "ok"
-        return len(record["lcs"]) - len(record["kept"]) - 1e6 * (wrong or refused)
+        match = match_of(pairwise, record["query"])
+        count = float(len(match.pairs["lcs"]) - len(match.pairs["segments"]))
+        truth = true_step(reference, record["reference"], record["query"])
+        if truth is not None:
+            count -= match.num_right("lcs", truth) - match.num_right("segments", truth)
+        wrong = truth is not None and np.hypot(*(match.ref_from_query - truth)[:2]) > RIGHT_M
+        return count - 1e6 * (wrong or record["status"] != "ok")
 
     return _best(pairwise, dropped)

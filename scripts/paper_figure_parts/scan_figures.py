@@ -66,7 +66,6 @@ def histogram_figure(position: ScanPosition, radius_m: float) -> Figure:
     reach_m = 1.3 * radius_m
     left.set_xlim(CM * (centre[0] - reach_m), CM * (centre[0] + reach_m))
     left.set_ylim(CM * (centre[1] - reach_m), CM * (centre[1] + reach_m))
-    left.set_aspect("equal", adjustable="box")
     left.legend(fontsize=7, markerscale=2)
     right = figure.add_subplot(1, 2, 2, projection="polar")
     right.bar(directions, histogram, width=2 * np.pi / NUM_BINS, align="edge", color="blue", edgecolor="white")
