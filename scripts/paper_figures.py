@@ -33,9 +33,7 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, epilog=EXAMPLE, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument(
-        "inputs", nargs="*", type=Path, metavar="LOG|TRACE", help="default: datasets/nist_arena.nist"
-    )
+    parser.add_argument("inputs", nargs="*", type=Path, metavar="LOG|TRACE", help="default: datasets/nist_arena.nist")
     parser.add_argument(
         "--out", type=Path, default=ROOT / "results/figures", metavar="DIR", help="default: results/figures"
     )
@@ -46,7 +44,7 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--cli", type=Path, default=ROOT / "build/release/bin/shapemap-cli", metavar="FILE")
     parser.add_argument("--method", choices=("paper", "robust"), default="paper", help="default: %(default)s")
     parser.add_argument("--arg", action="append", default=[], help="one more argument for the mapper, repeatable")
-    parser.add_argument("--position", type=int, metavar="I", help="position of figure 1; default: in the middle")
+    parser.add_argument("--position", type=int, metavar="I", help="position of figure 1; default: the richest")
     parser.add_argument(
         "--hard-query", type=int, metavar="J", help="second position of figures 2 and 3; default: the hardest"
     )
@@ -85,9 +83,7 @@ def draw(source: Source, arguments: argparse.Namespace) -> None:
 def main(argv: list[str] | None = None) -> int:
     arguments = parse_arguments(argv)
     try:
-        for source in sources_of(
-            arguments.inputs, arguments.cli, arguments.out, arguments.method, arguments.arg
-        ):
+        for source in sources_of(arguments.inputs, arguments.cli, arguments.out, arguments.method, arguments.arg):
             draw(source, arguments)
     except RuntimeError as error:
         print(f"paper_figures.py: {error}", file=sys.stderr)

@@ -56,27 +56,21 @@ def match_facts(match: Match, truth: Array | None) -> dict[str, Any]:
     facts["num_correspondences"] = {stage: len(pairs) for stage, pairs in match.pairs.items()}
     facts["num_segments"] = len(match.segments)
     if truth is not None:
-        facts["num_right"] = {stage: match.num_right(stage, truth) for stage in match.pairs}
+        facts["num_right"] = {stage: int(match.is_right(stage, truth).sum()) for stage in match.pairs}
         facts["error_cm"] = 100.0 * float(np.hypot(*(match.ref_from_query - truth)[:2]))
     return facts
 
 
 def add_scan_figures(album: Album, trace: Trace, index: int | None) -> None:
-    """1a and 1b: of the position that is asked for, else of the one in the middle."""
-    with_points = sorted(i for i, position in trace.positions.items() if len(position.points))
-    if not with_points or (index is not None and index not in with_points):
-        album.leave_out("1a 1b", "the position has no shape points" if with_points else "no position has shape points")
+    """1a and 1b: of the position that is asked for, else of the one with the part that has most to show."""
+    positions = [position for i, position in sorted(trace.positions.items()) if index in (None, i)]
+    part = scan_figures.richest_part(positions)
+    if part is None:
+        album.leave_out("1a 1b", "no line segment was fitted")
         return
-    position = trace.positions[with_points[len(with_points) // 2] if index is None else index]
-    s = scan_figures.richest_sub_scan(position)
-    album.add(
-        "1a",
-        scan_figures.polyline_figure(position),
-        position=position.index,
-        sub_scan=s,
-        num_points=len(position.scan_points[s]),
-        num_segments=len(position.segments[s]),
-    )
+    facts = {"position": part.position, "num_points": len(part.points), "num_segments": len(part.segments)}
+    album.add("1a", scan_figures.polyline_figure(part), sub_scan=part.sub_scan, **facts)
+    position = trace.positions[part.position]
     if position.histograms is None:
         album.leave_out("1b", NOT_PAPER)
         return
@@ -142,38 +136,36 @@ def add_filtered_pair(album: Album, pairwise: Trace, reference: dict[int, Array]
 
 
 def add_maps(album: Album, trace: Trace, reference: dict[int, Array], baseline: dict[int, Array] | None) -> None:
-    """5a to 5d, each in the frame of its first position."""
-    poses = trace.map_poses()
+    """5a to 5d, each in the frame of its first position, and with limits that hold ours and that of the reference."""
+    poses, before = trace.map_poses(), trace.shape_poses()
+    errors = position_errors_m(poses, reference)
     if not poses:
         album.leave_out("5a 5b 5c 5d 6a 6b", "no position is in the map")
         return
-    before = trace.shape_poses()
+    truth = in_frame_of(min(errors), reference) if errors else {}
+    ours = map_figures.map_points(trace, poses, corrected=True)
+    shown = np.concatenate([ours, map_figures.map_points(trace, truth, corrected=False)])
+
+    def add(name: str, title: str, of: dict[int, Array], points: Array) -> None:
+        title = f"5({name[1]}) {title}: {len(of)} positions"
+        limits = np.concatenate([shown, points]) if name == "5b" else shown
+        album.add(name, map_figures.map_figure(title, points, limits), num_positions=len(of))
+
     if before:
-        title = "5(a) estimated poses before ICP"
-        album.add("5a", map_figures.map_figure(trace, before, title), num_positions=len(before))
+        add("5a", "estimated poses before ICP", before, map_figures.map_points(trace, before, corrected=False))
     else:
         album.leave_out("5a", NOT_PAPER)
     if baseline:
-        shown = in_frame_of(min(baseline), baseline)
-        figure = map_figures.map_figure(trace, shown, "5(b) scan matching fed with our poses")
-        album.add("5b", figure, num_positions=len(shown))
+        of = in_frame_of(min(baseline), baseline)
+        add("5b", "scan matching fed with our poses", of, map_figures.map_points(trace, of, corrected=False))
     else:
         album.leave_out("5b", "no --baseline-trajectory")
-    title = f"5(c) our map, {trace.method} method"
-    album.add("5c", map_figures.map_figure(trace, poses, title, corrected=True), num_positions=len(poses))
-    add_reference_figures(album, trace, poses, reference)
-
-
-def add_reference_figures(album: Album, trace: Trace, poses: dict[int, Array], reference: dict[int, Array]) -> None:
-    """5d, 6a, 6b."""
-    errors = position_errors_m(poses, reference)
-    if not errors:
+    add("5c", f"our map, {trace.method} method", poses, ours)
+    if not truth:
         album.leave_out("5d 6a 6b", NO_REFERENCE)
         return
-    first = min(errors)
-    truth = in_frame_of(first, reference)
-    album.add("5d", map_figures.map_figure(trace, truth, "5(d) reference poses"), num_positions=len(truth))
-    estimated = in_frame_of(first, poses)
+    add("5d", "reference poses", truth, map_figures.map_points(trace, truth, corrected=False))
+    estimated = in_frame_of(min(errors), poses)
     album.add("6a", map_figures.poses_figure(estimated, truth), num_positions=len(errors))
     album.add(
         "6b",
@@ -192,9 +184,7 @@ class Choices:
     filtered_query: int | None = None
 
 
-def album_of(
-    source: Source, reference: dict[int, Array], baseline: dict[int, Array] | None, choices: Choices
-) -> Album:
+def album_of(source: Source, reference: dict[int, Array], baseline: dict[int, Array] | None, choices: Choices) -> Album:
     """All figures that the source has what it takes for."""
     album = Album()
     add_scan_figures(album, source.main, choices.position)

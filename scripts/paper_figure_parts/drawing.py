@@ -11,11 +11,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from shapemap_sim.poses import Array
 
 CM = 100.0  # the paper's axes are in centimetres, all our numbers in metres
 TARGET, QUERY, LINK = "red", "darkturquoise", "blue"  # as in the paper
+WRONG_LINK = "#a0a0d8"  # where it is known which are wrong
 ENDINGS = ("svg", "pdf", "png")
 DPI = 200
 MOST_VECTOR_POINTS = 60_000  # more would make vector files that no program opens gladly
@@ -54,15 +56,21 @@ def draw_lines(axes: Axes, lines_m: Array, colour: str, width: float = 0.6, labe
     axes.add_collection(LineCollection(list(CM * lines_m), colors=colour, linewidths=width, label=label))
 
 
-def show_around(axes: Axes, points_m: Array) -> None:
-    """Limits that hold all but the farthest hundredth of the points on each side."""
-    low, high = np.percentile(points_m, 1, axis=0) - MARGIN_M, np.percentile(points_m, 99, axis=0) + MARGIN_M
+def show_around(axes: Axes, points_m: Array, all_of_m: Array | None = None) -> None:
+    """Limits that hold all but the farthest hundredth of the points on each side, and `all_of_m` whole."""
+    low, high = np.percentile(points_m, 1, axis=0), np.percentile(points_m, 99, axis=0)
+    if all_of_m is not None and len(all_of_m):
+        low, high = np.minimum(low, all_of_m.min(axis=0)), np.maximum(high, all_of_m.max(axis=0))
+    low, high = low - MARGIN_M, high + MARGIN_M
     axes.set_xlim(CM * low[0], CM * high[0])
     axes.set_ylim(CM * low[1], CM * high[1])
 
 
-def draw_legend(axes: Axes, **keywords: object) -> None:
-    axes.legend(fontsize=7, markerscale=5, loc="best", framealpha=0.9, **keywords)
+def draw_legend(axes: Axes) -> None:
+    legend = axes.legend(fontsize=7, framealpha=0.9)
+    for handle in legend.legend_handles:
+        if isinstance(handle, Line2D):
+            handle.set_markersize(5)
 
 
 def save(figure: Figure, folder: Path, name: str) -> list[str]:
@@ -72,7 +80,7 @@ def save(figure: Figure, folder: Path, name: str) -> list[str]:
     undated: dict[str, dict[str, None]] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}
     with mpl.rc_context({"svg.hashsalt": name}):
         for ending, file in zip(ENDINGS, names):
-            figure.savefig(folder / file, dpi=DPI, metadata=undated[ending])
+            figure.savefig(folder / file, dpi=DPI, metadata=undated[ending], bbox_inches="tight")
     return names
 
 

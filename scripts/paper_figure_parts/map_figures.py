@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from shapemap_sim.poses import Array, transform
 
-from .drawing import CM, draw_legend, draw_points, in_cm, new_figure, show_around
+from .drawing import CM, draw_points, in_cm, new_figure, show_around
 from .trace import Trace
 
 
@@ -25,14 +25,12 @@ def map_points(trace: Trace, poses: Mapping[int, Array], corrected: bool) -> Arr
     return np.concatenate(parts)
 
 
-def map_figure(trace: Trace, poses: Mapping[int, Array], title: str, corrected: bool = False) -> Figure:
-    """5: the returns of all positions where the poses put them."""
-    points = map_points(trace, poses, corrected)
-    figure, axes = new_figure(f"{title}: {len(poses)} positions", 7.0, 5.0)
+def map_figure(title: str, points: Array, shown: Array) -> Figure:
+    """5: a map as dots; `shown` are the points that the limits hold, so that maps can be compared by eye."""
+    figure, axes = new_figure(title, 7.0, 5.0)
     draw_points(axes, points, "black", size=1.2)
     in_cm(axes)
-    if len(points):
-        show_around(axes, points)
+    show_around(axes, shown)
     return figure
 
 
@@ -51,9 +49,9 @@ def poses_figure(estimated: Mapping[int, Array], reference: Mapping[int, Array])
             label=label,
         )  # fmt: skip
     for i in both if few else []:
-        axes.annotate(str(i), CM * reference[i][:2], (5, 5), textcoords="offset points", fontsize=7)
+        axes.annotate(str(i), tuple(CM * reference[i][:2]), (5, 5), textcoords="offset points", fontsize=7)
     in_cm(axes)
-    axes.margins(0.1)
+    show_around(axes, np.array([pose[:2] for poses in (estimated, reference) for pose in poses.values()]))
     axes.legend(fontsize=7)
     return figure
 

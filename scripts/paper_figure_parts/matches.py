@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shapemap_sim.poses import Array, compose, inverse, rotate, transform
 
@@ -38,11 +39,11 @@ class Match:
         """The query's returns where the segment-wise translation puts them."""
         return self.query_scan + self.ref_from_query[:2]
 
-    def num_right(self, stage: str, true_ref_from_query: Array) -> int:
-        """How many correspondences join points that truly are one place."""
+    def is_right(self, stage: str, true_ref_from_query: Array) -> NDArray[np.bool_]:
+        """Which correspondences join points that truly are one place."""
         pairs = self.pairs[stage]
         at_truth = transform(true_ref_from_query, rotate(pairs[:, 1], -self.rotation_rad))
-        return int((np.hypot(*(at_truth - pairs[:, 0]).T) < RIGHT_M).sum())
+        return np.hypot(*(at_truth - pairs[:, 0]).T) < RIGHT_M
 
 
 def match_of(trace: Trace, query: int) -> Match:
@@ -98,7 +99,7 @@ def hard_pair(pairwise: Trace, reference: Mapping[int, Array]) -> int | None:
         if truth is None:
             return -float(record["overlap_ratio"])
         match = match_of(pairwise, record["query"])
-        return -match.num_right("lcs", truth) / max(1, len(match.pairs["lcs"]))
+        return -float(match.is_right("lcs", truth).sum()) / max(1, len(match.pairs["lcs"]))
 
     return _best(pairwise, hardness)
 
@@ -112,7 +113,7 @@ def filtered_pair(pairwise: Trace, reference: Mapping[int, Array]) -> int | None
         count = float(len(match.pairs["lcs"]) - len(match.pairs["segments"]))
         truth = true_step(reference, record["reference"], record["query"])
         if truth is not None:
-            count -= match.num_right("lcs", truth) - match.num_right("segments", truth)
+            count -= float(match.is_right("lcs", truth).sum()) - float(match.is_right("segments", truth).sum())
         wrong = truth is not None and np.hypot(*(match.ref_from_query - truth)[:2]) > RIGHT_M
         return count - 1e6 * (wrong or record["status"] != "ok")
 
