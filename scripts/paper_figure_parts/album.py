@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from shapemap_sim.poses import Array, transform
+from shapemap_sim.write import tum_line
 
 from . import map_figures, match_figures, scan_figures
 from .drawing import save
@@ -28,11 +29,13 @@ NOT_PAPER = "the trace is not of the paper's method"
 
 @dataclass
 class Album:
-    """Figures by name; `facts[name]` is what a figure shows in numbers, `left_out[name]` why there is none."""
+    """Figures by name; `facts[name]` is what a figure shows in numbers, `left_out[name]` why there is none; `texts` are
+    files beside them."""
 
     figures: dict[str, Figure] = field(default_factory=dict)
     facts: dict[str, dict[str, Any]] = field(default_factory=dict)
     left_out: dict[str, str] = field(default_factory=dict)
+    texts: dict[str, str] = field(default_factory=dict)
 
     def add(self, name: str, figure: Figure, **facts: Any) -> None:
         self.figures[name] = figure
@@ -47,6 +50,8 @@ class Album:
             name: {"files": save(figure, folder, f"figure_{name}"), **self.facts[name]}
             for name, figure in self.figures.items()
         }
+        for name, content in self.texts.items():
+            (folder / name).write_text(content, encoding="utf-8")
         text = json.dumps({**head, "figures": figures, "left_out": self.left_out}, indent=1)
         (folder / "figures.json").write_text(text + "\n", encoding="utf-8")
 
@@ -92,7 +97,7 @@ def checked(pairwise: Trace, query: int | None, choose: Callable[[], int | None]
 
 def add_hard_pair(album: Album, main: Trace, pairwise: Trace, reference: dict[int, Array], asked: int | None) -> None:
     """2, 3a, 3b: one query against one scan and against the partial map."""
-    query = checked(pairwise, asked, lambda: hard_pair(pairwise, reference))
+    query = checked(pairwise, asked, lambda: hard_pair(pairwise, main, reference))
     if query is None:
         album.leave_out("2 3a 3b", "no alignment with correspondences to show")
         return
@@ -136,27 +141,32 @@ def add_filtered_pair(album: Album, pairwise: Trace, reference: dict[int, Array]
 
 
 def add_maps(album: Album, trace: Trace, reference: dict[int, Array], baseline: dict[int, Array] | None) -> None:
-    """5a to 5d, each in the frame of its first position, and with limits that hold ours and that of the reference."""
+    """5a to 5d, all in the frame of one position and with limits that hold ours and that of the reference."""
     poses, before = trace.map_poses(), trace.shape_poses()
     errors = position_errors_m(poses, reference)
     if not poses:
         album.leave_out("5a 5b 5c 5d 6a 6b", "no position is in the map")
         return
-    truth = in_frame_of(min(errors), reference) if errors else {}
+    first = min(errors or poses)
+    poses, before = in_frame_of(first, poses), in_frame_of(first, before)
+    truth = in_frame_of(first, reference) if errors else {}
     ours = map_figures.map_points(trace, poses, corrected=True)
     shown = np.concatenate([ours, map_figures.map_points(trace, truth, corrected=False)])
 
     def add(name: str, title: str, of: dict[int, Array], points: Array) -> None:
         title = f"5({name[1]}) {title}: {len(of)} positions"
+        places = np.array([pose[:2] for pose in of.values()])
         limits = np.concatenate([shown, points]) if name == "5b" else shown
-        album.add(name, map_figures.map_figure(title, points, limits), num_positions=len(of))
+        album.add(name, map_figures.map_figure(title, points, limits, places), num_positions=len(of))
 
     if before:
         add("5a", "estimated poses before ICP", before, map_figures.map_points(trace, before, corrected=False))
+        lines = [tum_line(trace.positions[i].timestamp_s, pose) for i, pose in before.items()]
+        album.texts["before_icp.tum"] = "".join(lines)
     else:
         album.leave_out("5a", NOT_PAPER)
     if baseline:
-        of = in_frame_of(min(baseline), baseline)
+        of = in_frame_of(first if first in baseline else min(baseline), baseline)
         add("5b", "scan matching fed with our poses", of, map_figures.map_points(trace, of, corrected=False))
     else:
         album.leave_out("5b", "no --baseline-trajectory")
@@ -165,8 +175,7 @@ def add_maps(album: Album, trace: Trace, reference: dict[int, Array], baseline: 
         album.leave_out("5d 6a 6b", NO_REFERENCE)
         return
     add("5d", "reference poses", truth, map_figures.map_points(trace, truth, corrected=False))
-    estimated = in_frame_of(min(errors), poses)
-    album.add("6a", map_figures.poses_figure(estimated, truth), num_positions=len(errors))
+    album.add("6a", map_figures.poses_figure(poses, truth), num_positions=len(errors))
     album.add(
         "6b",
         map_figures.error_figure(errors),

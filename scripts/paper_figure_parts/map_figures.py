@@ -14,6 +14,8 @@ from shapemap_sim.poses import Array, transform
 from .drawing import CM, draw_points, in_cm, new_figure, show_around
 from .trace import Trace
 
+MOST_LABELS = 20
+
 
 def map_points(trace: Trace, poses: Mapping[int, Array], corrected: bool) -> Array:
     """All returns `[n, 2]` of the positions in `poses`; `corrected`: with the corrections by decoupled ICP."""
@@ -25,12 +27,13 @@ def map_points(trace: Trace, poses: Mapping[int, Array], corrected: bool) -> Arr
     return np.concatenate(parts)
 
 
-def map_figure(title: str, points: Array, shown: Array) -> Figure:
-    """5: a map as dots; `shown` are the points that the limits hold, so that maps can be compared by eye."""
+def map_figure(title: str, points: Array, shown: Array, places: Array) -> Figure:
+    """5: a map as dots. The limits are those of the points `shown` and of the positions `places` `[n, 2]`, so that maps
+    can be compared by eye."""
     figure, axes = new_figure(title, 7.0, 5.0)
     draw_points(axes, points, "black", size=1.2)
     in_cm(axes)
-    show_around(axes, shown)
+    show_around(axes, shown, places)
     return figure
 
 
@@ -48,10 +51,11 @@ def poses_figure(estimated: Mapping[int, Array], reference: Mapping[int, Array])
             *places.T, linestyle="none", marker=marker, markersize=8 if few else 3, fillstyle="none", color=colour,
             label=label,
         )  # fmt: skip
-    for i in both if few else []:
+    for i in both[:: -(-len(both) // MOST_LABELS) or 1]:
         axes.annotate(str(i), tuple(CM * reference[i][:2]), (5, 5), textcoords="offset points", fontsize=7)
     in_cm(axes)
-    show_around(axes, np.array([pose[:2] for poses in (estimated, reference) for pose in poses.values()]))
+    drawn = np.array([poses[i][:2] for poses in (estimated, reference) for i in both])
+    show_around(axes, drawn, drawn)
     axes.legend(fontsize=7)
     return figure
 

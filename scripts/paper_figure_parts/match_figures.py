@@ -35,7 +35,7 @@ def draw_scans(axes: Axes, match: Match, query_scan: Array) -> None:
     draw_points(axes, match.target_scan, TARGET, f"{many} {listed(match.targets)}", size=2.5)
     draw_points(axes, query_scan, QUERY, f"scan {match.query}", size=2.5)
     in_cm(axes)
-    show_around(axes, np.concatenate([match.target_scan, query_scan]), match.pairs["lcs"].reshape(-1, 2))
+    show_around(axes, np.concatenate([match.target_scan, query_scan]), match.pairs["segments"].reshape(-1, 2))
 
 
 def draw_links(axes: Axes, match: Match, stage: str, truth: Array | None) -> None:

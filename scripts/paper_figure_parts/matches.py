@@ -84,22 +84,38 @@ def true_step(reference: Mapping[int, Array], i: int, j: int) -> Array | None:
     return compose(inverse(reference[i]), reference[j]) if i in reference and j in reference else None
 
 
-def _best(trace: Trace, value: Callable[[dict[str, Any]], float]) -> int | None:
+def is_aligned(match: Match | None, status: str, truth: Array | None) -> bool:
+    """Whether the shape alone gave the right pose; without reference poses, whether the alignment was trusted."""
+    if match is None or truth is None:
+        return match is not None and status == "ok"
+    return float(np.hypot(*(match.ref_from_query - truth)[:2])) < RIGHT_M
+
+
+def _shown(trace: Trace, query: int) -> Match | None:
+    record = trace.alignments.get(query)
+    return None if record is None or record["best_rotation"] is None else match_of(trace, query)
+
+
+def _best(trace: Trace, value: Callable[[dict[str, Any]], tuple[float, ...]]) -> int | None:
     """The query of the alignment with the largest value; of equals the first."""
     found = [record for record in trace.alignments.values() if record["best_rotation"] is not None]
     return max(found, key=value)["query"] if found else None
 
 
-def hard_pair(pairwise: Trace, reference: Mapping[int, Array]) -> int | None:
-    """The query that the scan before it helps least: for figures 2 and 3. With reference poses that is where the share
-    of right correspondences is smallest, without them where the aligned scans overlap least."""
+def hard_pair(pairwise: Trace, main: Trace, reference: Mapping[int, Array]) -> int | None:
+    """The query that the scan before it helps least and the partial map helps, for figures 2 and 3. With reference
+    poses the first is where fewest correspondences are right, without them where the aligned scans overlap least."""
 
-    def hardness(record: dict[str, Any]) -> float:
-        truth = true_step(reference, record["reference"], record["query"])
-        if truth is None:
-            return -float(record["overlap_ratio"])
-        match = match_of(pairwise, record["query"])
-        return -float(match.is_right("lcs", truth).sum()) / max(1, len(match.pairs["lcs"]))
+    def hardness(record: dict[str, Any]) -> tuple[float, ...]:
+        query = record["query"]
+        truth = true_step(reference, record["reference"], query)
+        in_map = _shown(main, query)
+        helped = is_aligned(in_map, main.alignments[query]["status"] if in_map else "", truth)
+        alone = -float(record["overlap_ratio"])
+        if truth is not None:
+            match = match_of(pairwise, query)
+            alone = -float(match.is_right("lcs", truth).sum()) / max(1, len(match.pairs["lcs"]))
+        return helped, in_map is not None and len(in_map.targets) > 1, alone
 
     return _best(pairwise, hardness)
 
@@ -108,13 +124,12 @@ def filtered_pair(pairwise: Trace, reference: Mapping[int, Array]) -> int | None
     """The query that shows best what the filters do, for figure 4. With reference poses that is where they drop most
     correspondences that are wrong and the pose is right, without them where they drop most."""
 
-    def dropped(record: dict[str, Any]) -> float:
+    def dropped(record: dict[str, Any]) -> tuple[float, ...]:
         match = match_of(pairwise, record["query"])
         count = float(len(match.pairs["lcs"]) - len(match.pairs["segments"]))
         truth = true_step(reference, record["reference"], record["query"])
         if truth is not None:
             count -= float(match.is_right("lcs", truth).sum()) - float(match.is_right("segments", truth).sum())
-        wrong = truth is not None and np.hypot(*(match.ref_from_query - truth)[:2]) > RIGHT_M
-        return count - 1e6 * (wrong or record["status"] != "ok")
+        return is_aligned(match, record["status"], truth), count
 
     return _best(pairwise, dropped)

@@ -57,7 +57,9 @@ def reference_poses(trace: Trace, log: Path | None, given: Path | None) -> dict[
 
 
 def in_frame_of(first: int, poses: Mapping[int, Array]) -> dict[int, Array]:
-    """The same poses in the frame of one of them."""
+    """The same poses in the frame of one of them; of none, none."""
+    if not poses:
+        return {}
     to_first = inverse(poses[first])
     return {index: compose(to_first, pose) for index, pose in poses.items()}
 
