@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/io/trace_file.hpp"
 
+#include <utility>
+
 #include "byte_sink.hpp"
 #include "trace_json.hpp"
 
@@ -16,8 +18,8 @@ void write_line(const Json& record, ByteSink& sink) {
 
 }  // namespace
 
-TraceFile::TraceFile(const std::string& path, const TracedRun& run)
-    : run_(run),
+TraceFile::TraceFile(const std::string& path, TracedRun run)
+    : run_(std::move(run)),
       sink_(std::make_unique<ByteSink>(
           path, ends_in_gz(path) ? ByteSink::Compression::kGzip : ByteSink::Compression::kNone)) {
   write_line(run_json(run_), *sink_);

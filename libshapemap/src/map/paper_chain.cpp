@@ -74,7 +74,7 @@ class PaperChain {
   Alignment aligned(std::size_t index, const Shape& shape) const {
     if (!sink_) return align(target(), shape, options_.align);
     AlignTrace steps;
-    const Alignment alignment = align(target(), shape, options_.align, &steps);
+    Alignment alignment = align(target(), shape, options_.align, &steps);
     std::vector<TracedTarget> targets;
     for (const RecentScan& recent : recent_) {
       targets.push_back({recent.placed.position_index, recent.scan.shape.size(), ref_from_robot(recent),

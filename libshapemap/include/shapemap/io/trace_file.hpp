@@ -27,7 +27,7 @@ class ByteSink;
 class TraceFile : public TraceSink {
  public:
   /// A `path` that ends in ".gz" is compressed.
-  TraceFile(const std::string& path, const TracedRun& run);
+  TraceFile(const std::string& path, TracedRun run);
   ~TraceFile() override;
 
   void on_shape(std::size_t position_index, const std::vector<ShapePoint>& points) override;
