@@ -116,7 +116,7 @@ def _position(record: dict[str, Any], scale: float) -> ScanPosition:
     return ScanPosition(
         index=record["index"],
         index_in_whole_log=record["index_in_whole_log"],
-        timestamp_s=record["timestamp_s"],
+        timestamp_s=float("nan") if record["timestamp_s"] is None else record["timestamp_s"],
         scan_points=[np.array(part["scan_points"]).reshape(-1, 2) for part in record["sub_scans"]],
         segments=[np.array(part["segments"]).reshape(-1, 4) for part in record["sub_scans"]],
         points=np.array(record["points"]).reshape(-1, 4),
