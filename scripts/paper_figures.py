@@ -22,10 +22,13 @@ EXAMPLE = """examples:
   scripts/paper_figures.py
   scripts/paper_figures.py intel.log.gz --arg=--rotation-range-deg --arg=90 --arg=--first --arg=100
   shapemap-cli arena.nist --method paper --out map.png --trace arena.jsonl
+  shapemap-baselines vasco arena.nist --poses results/figures/arena/before_icp.tum --trajectory vasco.tum
   scripts/paper_figures.py arena.jsonl --reference arena.tum --baseline-trajectory vasco.tum
 
 Figures 5(d) and 6 need reference poses: --reference, else LOG.tum beside the log, else those in a text log.
-Figure 5(b) needs --baseline-trajectory. What is left out is said, with the reason.
+Figure 5(b) needs --baseline-trajectory; before_icp.tum has the poses of 5(a), which the paper gave to its baseline.
+Figures 2 to 4 of a trace need a second trace of the log, made with --target-scans 1. With reference poses the pairs
+they show are chosen with them. What is left out is said, with the reason.
 Exit status: 0 done, 1 a log could not be mapped, 2 wrong usage or a file that cannot be read."""
 
 
