@@ -43,7 +43,7 @@ CONFINEMENTS = (
     Confinement(
         "nlohmann-json",
         "nlohmann/*",
-        ("libshapemap/src/io/report.cpp", "libshapemap/src/io/pairs_json.cpp", "apps/*"),
+        ("libshapemap/src/io/json_parts.hpp", "apps/*"),
     ),
     Confinement("nanoflann", "nanoflann*", ("libshapemap/src/*.cpp",), max_files=1),
 )

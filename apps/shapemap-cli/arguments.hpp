@@ -21,6 +21,7 @@ struct MapArguments {
   std::string carmen_path;
   std::string rawlog_path;
   std::string report_path;
+  std::string trace_path;
   bool force = false;
   bool dump_config = false;  ///< print the options and do nothing else
   Verbosity verbosity = Verbosity::kNormal;

@@ -73,6 +73,8 @@ void add_outputs(CLI::App& app, MapArguments& arguments) {
       "placed positions as a rawlog with poses; example: --rawlog-out map.rawlog");
   add("--report", arguments.report_path,
       "options, results, timings as JSON, '-' for standard output; example: --report report.json");
+  add("--trace", arguments.trace_path,
+      "every step that led to the map, a JSON object a line, .gz compresses; example: --trace trace.jsonl");
   app.add_flag("--force", arguments.force, "replace outputs that exist")->group("Output");
 }
 

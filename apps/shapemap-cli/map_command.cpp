@@ -10,6 +10,7 @@
 #include "options_file.hpp"
 #include "run_observer.hpp"
 #include "shapemap/core/errors.hpp"
+#include "shapemap/io/trace_file.hpp"
 #include "shapemap/map/map_log.hpp"
 
 namespace shapemap::cli {
@@ -85,12 +86,27 @@ void print_details(const Log& log, const RunCosts& costs, const StageTimes& time
       costs.peak_memory_mib);
 }
 
-MapResult map_with_progress(const Log& log, const MapArguments& arguments, std::vector<std::string>& warnings) {
+MapResult map_with_progress(const Log& log, const MapArguments& arguments, TraceSink* sink,
+                            std::vector<std::string>& warnings) {
   ConsoleObserver observer(arguments.verbosity != Verbosity::kQuiet);
-  MapResult result = map_log(log, arguments.settings.mapping, observer);
+  MapResult result = map_log(log, arguments.settings.mapping, observer, sink);
   observer.finish();
   if (result.interrupted || interrupted()) throw Interrupted();
   warnings.insert(warnings.end(), observer.warnings().begin(), observer.warnings().end());
+  return result;
+}
+
+/// Maps the log, and writes the trace meanwhile if one is wanted.
+MapResult map_and_trace(const Log& log, const MapArguments& arguments, std::vector<std::string>& warnings,
+                        OutputSet& outputs) {
+  if (arguments.trace_path.empty()) return map_with_progress(log, arguments, nullptr, warnings);
+  const MapSettings& settings = arguments.settings;
+  MapResult result;
+  outputs.add(arguments.trace_path, [&](const std::string& path) {
+    TraceFile trace(path, {arguments.log_path, log, settings.mapping, settings.reading, settings.selection});
+    result = map_with_progress(log, arguments, &trace, warnings);
+    trace.commit(result);
+  });
   return result;
 }
 
@@ -116,12 +132,12 @@ int run_map(const MapArguments& arguments) {
 
   set_interrupt_policy(OnInterrupt::kFinishStep);
   const Stopwatch mapping;
-  const MapResult result = map_with_progress(log, arguments, warnings);
+  OutputSet outputs;
+  const MapResult result = map_and_trace(log, arguments, warnings, outputs);
   costs.map_s = mapping.seconds();
   require_a_map(arguments, result);
 
   const Stopwatch writing;
-  OutputSet outputs;
   prepare_outputs(arguments, log, result, outputs);
   costs.write_s = writing.seconds();
   costs.wall_s = total.seconds();

@@ -50,8 +50,8 @@ std::string ros_yaml_path(const std::string& map_path) {
 
 std::vector<std::string> output_paths(const MapArguments& arguments) {
   std::vector<std::string> paths{arguments.map_path, ros_yaml_path(arguments.map_path)};
-  for (const std::string& path :
-       {arguments.trajectory_path, arguments.carmen_path, arguments.rawlog_path, arguments.report_path}) {
+  for (const std::string& path : {arguments.trajectory_path, arguments.carmen_path, arguments.rawlog_path,
+                                  arguments.report_path, arguments.trace_path}) {
     if (!path.empty()) paths.push_back(path);
   }
   return paths;

@@ -16,7 +16,8 @@ std::string ros_yaml_path(const std::string& map_path);
 /// All files that a run with `arguments` writes.
 std::vector<std::string> output_paths(const MapArguments& arguments);
 
-/// Draws the map and prepares the files that were asked for, except the report, which is made last.
+/// Draws the map and prepares the files that were asked for, except the trace, which is
+/// written while mapping, and the report, which is made last.
 void prepare_outputs(const MapArguments& arguments, const Log& log, const MapResult& result, OutputSet& outputs);
 
 }  // namespace shapemap::cli

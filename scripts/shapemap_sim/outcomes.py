@@ -79,11 +79,17 @@ class PairOutcome:
         return self.called_ok
 
 
-def parse_tum(text: str) -> dict[float, Array]:
-    """Poses `[3]` by timestamp."""
+def parse_tum(text: str, name: str = "trajectory") -> dict[float, Array]:
+    """Poses `[3]` by timestamp. Raises ValueError with `name` and line for what is no TUM line."""
     poses = {}
-    for line in text.splitlines():
-        t, x, y, _, _, _, qz, qw = (float(field) for field in line.split())
+    for number, line in enumerate(text.splitlines(), 1):
+        fields = line.split("#")[0].split()
+        if not fields:
+            continue
+        try:
+            t, x, y, _, _, _, qz, qw = (float(field) for field in fields)
+        except ValueError:
+            raise ValueError(f"{name}:{number}: expected 8 numbers, t x y z qx qy qz qw") from None
         poses[t] = np.array([x, y, 2.0 * np.arctan2(qz, qw)])
     return poses
 

@@ -52,12 +52,15 @@ def nist_text(simulation: Simulation, title: str = "simulated rescue arena") -> 
     return "\n".join(lines) + "\n"
 
 
+def tum_line(timestamp_s: float, pose: Array) -> str:
+    """`t x y z qx qy qz qw` and a line end."""
+    x, y, theta = pose
+    return f"{timestamp_s:.3f} {x:.9f} {y:.9f} 0 0 0 {np.sin(theta / 2):.12f} {np.cos(theta / 2):.12f}\n"
+
+
 def tum_text(simulation: Simulation) -> str:
-    """The reference poses as lines `t x y z qx qy qz qw`."""
-    lines = []
-    for time, (x, y, theta) in zip(simulation.drive.timestamps_s, simulation.drive.map_from_robot):
-        lines.append(f"{time:.3f} {x:.9f} {y:.9f} 0 0 0 {np.sin(theta / 2):.12f} {np.cos(theta / 2):.12f}")
-    return "\n".join(lines) + "\n"
+    """The reference poses as TUM lines."""
+    return "".join(map(tum_line, simulation.drive.timestamps_s, simulation.drive.map_from_robot))
 
 
 def pose_dict(pose: Array) -> dict[str, float]:

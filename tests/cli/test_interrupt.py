@@ -18,6 +18,7 @@ def long_log(tmp_path, room_text):
 
 def start(cli_path, folder, terminal=None):
     arguments = [cli_path, "long.log", "--out", "map.png", "--trajectory", "map.tum", "--rawlog-out", "out.rawlog"]
+    arguments += ["--trace", "trace.jsonl"]
     return subprocess.Popen(arguments, cwd=folder, stderr=terminal if terminal is not None else subprocess.PIPE)
 
 

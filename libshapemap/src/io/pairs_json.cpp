@@ -1,36 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <cmath>
-#include <nlohmann/json.hpp>
-
 #include "shapemap/io/pair_files.hpp"
+
+#include "json_parts.hpp"
 
 namespace shapemap {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-Json ranked_json(const RankedPose& ranked) {
-  const Pose2& pose = ranked.ref_from_query;
-  return {{"pose", {pose.x_m, pose.y_m, pose.theta_rad}},
-          {"score", ranked.score},
-          {"agree", ranked.agree},
-          {"cross_agree", ranked.cross_agree},
-          {"crossed", ranked.crossed},
-          {"hidden", ranked.hidden},
-          {"unclear", ranked.unclear},
-          {"outside", ranked.outside},
-          {"rms_m", ranked.rms_m},
-          {"partners", ranked.partners}};
-}
-
 Json ranked_json(const std::optional<RankedPose>& ranked) { return ranked ? ranked_json(*ranked) : Json(nullptr); }
-
-Json covariance_json(const Eigen::Matrix3d& covariance) {
-  if (!covariance.allFinite()) return nullptr;
-  Json rows = Json::array();
-  for (Eigen::Index i = 0; i < 3; ++i) rows.push_back({covariance(i, 0), covariance(i, 1), covariance(i, 2)});
-  return rows;
-}
 
 }  // namespace
 

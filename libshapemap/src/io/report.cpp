@@ -2,14 +2,11 @@
 #include "shapemap/io/report.hpp"
 
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <nlohmann/json.hpp>
+
+#include "json_parts.hpp"
 
 namespace shapemap {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 bool is_finite(const Pose2& pose) {
   return std::isfinite(pose.x_m) && std::isfinite(pose.y_m) && std::isfinite(pose.theta_rad);
@@ -24,27 +21,6 @@ Json poses_json(const std::vector<Pose2>& poses) {
   Json list = Json::array();
   for (const Pose2& pose : poses) list.push_back(pose_json(pose));
   return list;
-}
-
-/// In the unit of the option's name and without the last bits, which converting there and back leaves behind.
-double shown(double stored, double unit) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.14g", stored / unit);
-  return std::strtod(text, nullptr);
-}
-
-template <class Options>
-void add_options(const Options& options, Json& all) {
-  Options::fields(options, [&](const Field& field, const auto& value) {
-    using Value = std::decay_t<decltype(value)>;
-    if constexpr (std::is_enum_v<Value>) {
-      all[field.name] = enum_name(value);
-    } else if constexpr (std::is_same_v<Value, double>) {
-      all[field.name] = shown(value, field.unit);
-    } else {
-      all[field.name] = value;
-    }
-  });
 }
 
 Json options_json(const RunReport& report) {
@@ -76,16 +52,6 @@ Json log_json(const RunReport& report) {
           {"sensors", sensors}};
 }
 
-Json number_json(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-/// Rows of x [m], y [m], theta [rad]; null when there is none.
-Json covariance_json(const Eigen::Matrix3d& covariance) {
-  if (!covariance.allFinite()) return nullptr;
-  Json rows = Json::array();
-  for (Eigen::Index i = 0; i < 3; ++i) rows.push_back({covariance(i, 0), covariance(i, 1), covariance(i, 2)});
-  return rows;
-}
-
 Json ranked_json(const std::vector<RankedPose>& ranked) {
   Json list = Json::array();
   for (const RankedPose& pose : ranked) {
@@ -97,10 +63,8 @@ Json ranked_json(const std::vector<RankedPose>& ranked) {
   return list;
 }
 
-/// Null where nothing was aligned: at the start of the log and after a position without shape.
 Json alignment_json(const PositionResult& position) {
-  const bool was_aligned = !position.starts_fragment || !position.reason.empty();
-  if (!was_aligned) return nullptr;
+  if (!was_aligned(position)) return nullptr;
   const Alignment& alignment = position.alignment;
   const auto if_any = [&](const Pose2& pose) { return alignment.has_pose() ? pose_json(pose) : Json(nullptr); };
   return {{"status", enum_name(alignment.status)},

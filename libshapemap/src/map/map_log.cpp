@@ -30,12 +30,12 @@ std::string MapResult::why_not_in_map(const PositionResult& position) const {
          ", which nothing ties to the map";
 }
 
-MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer) {
+MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink) {
   validate_all(options);
   MapResult result;
   const auto chain = options.chain.method == Method::kPaper ? chain_by_paper : chain_robustly;
   try {
-    chain(log, options, observer, result);
+    chain(log, options, observer, sink, result);
   } catch (const Interrupted&) {
     result.interrupted = true;
   }

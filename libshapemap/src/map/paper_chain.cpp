@@ -11,14 +11,14 @@ namespace {
 
 /// A placed scan that later ones are aligned to.
 struct RecentScan {
-  Pose2 map_from_robot;
+  PlacedPosition placed;
   TargetScan scan;  ///< in the robot's frame, with the corrections of its sub-scans
 };
 
 /// The chain of the paper: each scan against the partial map of the few before it.
 class PaperChain {
  public:
-  PaperChain(const MappingOptions& options, RunObserver& observer) : options_(options) {
+  PaperChain(const MappingOptions& options, RunObserver& observer, TraceSink* sink) : options_(options), sink_(sink) {
     options_.align.keep_going = [&observer] { return observer.keep_going(); };
     options_.align.threads = options.chain.threads;
     options_.align.min_points = options.shape.min_points;
@@ -28,6 +28,7 @@ class PaperChain {
     const auto start = std::chrono::steady_clock::now();
     const Shape shape = shape_of(position, options_.returns, options_.polylines, options_.shape);
     result.times.shape_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (sink_) sink_->on_shape(index, shape.points);
 
     PositionResult outcome;
     outcome.position_index = index;
@@ -51,12 +52,12 @@ class PaperChain {
     placed.robot_from_sub_scan.resize(position.sub_scans.size());
     outcome.starts_fragment = true;
     if (!recent_.empty()) {
-      outcome.alignment = align(target(), shape, options_.align);
+      outcome.alignment = aligned(outcome.position_index, shape);
       add_times(outcome.alignment, result.times);
       outcome.reason = outcome.alignment.reason;
       if (outcome.alignment.ok()) {
         outcome.starts_fragment = false;
-        placed.map_from_robot = recent_.back().map_from_robot * outcome.alignment.ref_from_query;
+        placed.map_from_robot = recent_.back().placed.map_from_robot * outcome.alignment.ref_from_query;
         placed.robot_from_sub_scan = outcome.alignment.query_from_sub_scan;
       } else {
         recent_.clear();
@@ -64,17 +65,33 @@ class PaperChain {
     }
     if (outcome.starts_fragment) result.fragments.emplace_back();
     outcome.fragment = static_cast<int>(result.fragments.size()) - 1;
-    recent_.push_back({placed.map_from_robot,
-                       target_scan(moved(shape, {}, placed.robot_from_sub_scan), options_.align.histogram.radius_m)});
+    recent_.push_back(
+        {placed, target_scan(moved(shape, {}, placed.robot_from_sub_scan), options_.align.histogram.radius_m)});
     if (recent_.size() > static_cast<std::size_t>(options_.chain.target_scans)) recent_.pop_front();
     result.fragments.back().positions.push_back(std::move(placed));
   }
 
+  Alignment aligned(std::size_t index, const Shape& shape) const {
+    if (!sink_) return align(target(), shape, options_.align);
+    AlignTrace steps;
+    Alignment alignment = align(target(), shape, options_.align, &steps);
+    std::vector<TracedTarget> targets;
+    for (const RecentScan& recent : recent_) {
+      targets.push_back({recent.placed.position_index, recent.scan.shape.size(), ref_from_robot(recent),
+                         recent.placed.robot_from_sub_scan});
+    }
+    sink_->on_alignment({index, std::move(targets), alignment, steps});
+    return alignment;
+  }
+
+  Pose2 ref_from_robot(const RecentScan& recent) const {
+    return inverse(recent_.back().placed.map_from_robot) * recent.placed.map_from_robot;
+  }
+
   /// The recent scans in the frame of the latest.
   PartialMap target() const {
-    const Pose2 ref_from_map = inverse(recent_.back().map_from_robot);
     std::vector<TargetScan> scans;
-    for (const RecentScan& recent : recent_) scans.push_back(moved(recent.scan, ref_from_map * recent.map_from_robot));
+    for (const RecentScan& recent : recent_) scans.push_back(moved(recent.scan, ref_from_robot(recent)));
     if (options_.align.lcs.target == LcsTarget::kPerScan) return PartialMap(std::move(scans));
     std::vector<Shape> shapes;
     shapes.reserve(scans.size());
@@ -89,13 +106,15 @@ class PaperChain {
   }
 
   MappingOptions options_;
+  TraceSink* sink_;
   std::deque<RecentScan> recent_;
 };
 
 }  // namespace
 
-void chain_by_paper(const Log& log, const MappingOptions& options, RunObserver& observer, MapResult& result) {
-  PaperChain chain(options, observer);
+void chain_by_paper(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
+                    MapResult& result) {
+  PaperChain chain(options, observer, sink);
   for (std::size_t i = 0; i < log.positions.size(); ++i) {
     if (!observer.keep_going()) throw Interrupted();
     chain.add(i, log.positions[i], result);

@@ -39,8 +39,8 @@ double companion_score(const Visibility& v) {
 
 class RobustChain {
  public:
-  RobustChain(const Log& log, const MappingOptions& options, RunObserver& observer, MapResult& result)
-      : log_(log), options_(options), observer_(observer), result_(result) {}
+  RobustChain(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink, MapResult& result)
+      : log_(log), options_(options), observer_(observer), sink_(sink), result_(result) {}
 
   void run() {
     for (std::size_t first = 0; first < log_.positions.size(); first += kBlock) {
@@ -78,6 +78,7 @@ class RobustChain {
     });
     for (std::size_t i = first; i < last; ++i) {
       const std::shared_ptr<const ScanView>& view = views[i - first];
+      if (sink_) sink_->on_shape(i, view->points);
       PositionResult outcome;
       outcome.position_index = i;
       outcome.timestamp_s = log_.positions[i].timestamp_s;
@@ -109,7 +110,10 @@ class RobustChain {
     result_.times.align_s += timed_for(count, [&](std::size_t i) { borrowed[i] = borrow_hypotheses(first + i - 1); });
     for (std::size_t i = 0; i < count; ++i) {
       std::vector<PoseHypothesis>& link = links_[first + i - 1];
+      const std::size_t num_own = link.size();
       for (const PoseHypothesis& pose : borrowed[i]) add_if_new(pose, link);
+      const std::size_t reference = scans_[first + i - 1].position_index;
+      if (sink_) sink_->on_link({reference, scans_[first + i].position_index, link, num_own});
       for (const PoseHypothesis& pose : link) choices_.scores[first + i - 1].push_back(pose.score);
       if (link.empty()) choices_.scores[first + i - 1].push_back(0.0);
     }
@@ -173,6 +177,8 @@ class RobustChain {
         const Choice& choice = choices[i - 1];
         const std::vector<PoseHypothesis>& link = links_[i - 1];
         outcome.alignment = judged(link, choice.alternative, choice.margin, options_.robust.confidence);
+        const std::size_t reference = scans_[i - 1].position_index;
+        if (sink_) sink_->on_choice({reference, outcome.position_index, choice.alternative, choice.margin});
         outcome.reason = outcome.alignment.reason;
         const bool improbable = outcome.alignment.probability < options_.smoothing.split_below;
         if (improbable && outcome.reason.empty()) outcome.reason = "less probable than it takes not to split the map";
@@ -198,6 +204,7 @@ class RobustChain {
   const Log& log_;
   const MappingOptions& options_;
   RunObserver& observer_;
+  TraceSink* sink_;
   MapResult& result_;
   std::vector<ChainedScan> scans_;
   std::vector<std::vector<PoseHypothesis>> links_;
@@ -206,8 +213,9 @@ class RobustChain {
 
 }  // namespace
 
-void chain_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, MapResult& result) {
-  RobustChain(log, options, observer, result).run();
+void chain_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
+                    MapResult& result) {
+  RobustChain(log, options, observer, sink, result).run();
 }
 
 }  // namespace shapemap

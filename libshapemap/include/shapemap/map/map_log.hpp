@@ -3,6 +3,7 @@
 
 #include "shapemap/core/observer.hpp"
 #include "shapemap/map/mapping_options.hpp"
+#include "shapemap/map/trace_sink.hpp"
 #include "shapemap/map/trajectory.hpp"
 #include "shapemap/scan/scan.hpp"
 
@@ -10,7 +11,8 @@ namespace shapemap {
 
 /// The main job: a pose for every position of `log` that can be aligned to the ones before it, from ranges alone.
 /// A position that cannot be aligned starts a new fragment. Same input and options give the same bits for any
-/// number of threads. Throws ConfigError for bad options; never throws for scans that do not match.
-MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer);
+/// number of threads, with or without a `sink` that looks on. Throws ConfigError for bad options; never throws for
+/// scans that do not match.
+MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink = nullptr);
 
 }  // namespace shapemap

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "shapemap/io/log_file.hpp"
+#include "shapemap/io/log_selection.hpp"
+#include "shapemap/map/map_log.hpp"
+
+/// All steps that led to a map as a file, for figures and analyses; docs/formats.md has its members.
+namespace shapemap {
+
+/// What is traced. The references must outlive the trace.
+struct TracedRun {
+  std::string log_path;
+  const Log& log;  ///< the positions that are looked at
+  const MappingOptions& mapping;
+  const LogReadOptions& reading;
+  const SelectionOptions& selection;
+};
+
+class ByteSink;
+
+/// Writes one JSON object a line as soon as there is something to tell, so that memory does not grow with the log.
+/// Holds no times and no number of threads: the same map has the same trace. All functions throw OutputError.
+class TraceFile : public TraceSink {
+ public:
+  /// A `path` that ends in ".gz" is compressed.
+  TraceFile(const std::string& path, TracedRun run);
+  ~TraceFile() override;
+
+  void on_shape(std::size_t position_index, const std::vector<ShapePoint>& points) override;
+  void on_alignment(const TracedAlignment& alignment) override;
+  void on_link(const TracedLink& link) override;
+  void on_choice(const TracedChoice& choice) override;
+
+  /// What became of each position, and the file to its place; without this there is none.
+  void commit(const MapResult& result);
+
+ private:
+  TracedRun run_;
+  std::unique_ptr<ByteSink> sink_;
+};
+
+}  // namespace shapemap

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "shapemap/align/align.hpp"
+#include "shapemap/align/pose_hypothesis.hpp"
+#include "shapemap/shape/shape.hpp"
+
+/// How a caller sees what led to a map, while it is made: for figures and analyses. See io/trace_file.hpp for one that
+/// writes it all to a file.
+namespace shapemap {
+
+/// One of the scans that make a partial map. Its points are those of its position, corrected and moved.
+struct TracedTarget {
+  std::size_t position_index = 0;
+  std::size_t num_points = 0;
+  Pose2 ref_from_robot;
+  std::vector<Pose2> robot_from_sub_scan;
+};
+
+/// An alignment by the paper's method; its reference is the last of the targets.
+struct TracedAlignment {
+  std::size_t query_index = 0;
+  std::vector<TracedTarget> targets;
+  const Alignment& alignment;
+  const AlignTrace& steps;
+};
+
+/// What the robust method has to choose from between two positions.
+struct TracedLink {
+  std::size_t reference_index = 0;
+  std::size_t query_index = 0;
+  const std::vector<PoseHypothesis>& hypotheses;
+  std::size_t num_own = 0;  ///< so many, the first, are from these two scans; the rest is by way of scans further back
+};
+
+/// What it chose, looking at the whole log.
+struct TracedChoice {
+  std::size_t reference_index = 0;
+  std::size_t query_index = 0;
+  std::size_t alternative = 0;  ///< index into the hypotheses of the link
+  double margin = 0.0;
+};
+
+/// Calls come from one thread; shapes and alignments come in the order of the log, and what is referred to is gone
+/// afterwards. Looking on changes no result; what a sink throws ends the run. Positions are indices into the log.
+struct TraceSink {
+  virtual ~TraceSink() = default;
+  /// All that the method looks at of a position, in the robot's frame.
+  virtual void on_shape(std::size_t /*position_index*/, const std::vector<ShapePoint>& /*points*/) {}
+  virtual void on_alignment(const TracedAlignment& /*alignment*/) {}
+  virtual void on_link(const TracedLink& /*link*/) {}
+  /// After all links.
+  virtual void on_choice(const TracedChoice& /*choice*/) {}
+};
+
+}  // namespace shapemap

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <type_traits>
+#include <vector>
+
+#include "shapemap/align/alignment.hpp"
+#include "shapemap/core/options.hpp"
+#include "shapemap/map/trajectory.hpp"
+
+/// What several of our JSON files hold. What is not a number is null.
+namespace shapemap {
+
+using Json = nlohmann::ordered_json;
+
+Json number_json(double value);
+
+/// [x_m, y_m, theta_rad].
+Json pose_array(const Pose2& pose);
+Json pose_arrays(const std::vector<Pose2>& poses);
+
+/// Rows of x [m], y [m], theta [rad].
+Json covariance_json(const Eigen::Matrix3d& covariance);
+
+Json ranked_json(const RankedPose& ranked);
+
+/// False at the start of the log and after a position without shape, where there is nothing to align to.
+bool was_aligned(const PositionResult& position);
+
+/// In the unit of the option's name and without the last bits, which converting there and back leaves behind.
+double shown(double stored, double unit);
+
+/// Each option of `options` by its name.
+template <class Options>
+void add_options(const Options& options, Json& all) {
+  Options::fields(options, [&](const Field& field, const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_enum_v<Value>) {
+      all[field.name] = enum_name(value);
+    } else if constexpr (std::is_same_v<Value, double>) {
+      all[field.name] = shown(value, field.unit);
+    } else {
+      all[field.name] = value;
+    }
+  });
+}
+
+}  // namespace shapemap

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/io/trace_file.hpp"
+
+#include <utility>
+
+#include "byte_sink.hpp"
+#include "trace_json.hpp"
+
+namespace shapemap {
+namespace {
+
+bool ends_in_gz(const std::string& path) { return path.size() > 3 && path.compare(path.size() - 3, 3, ".gz") == 0; }
+
+void write_line(const Json& record, ByteSink& sink) {
+  // Names in a log may hold any bytes; those that are no UTF-8 are replaced rather than fatal.
+  sink.write(record.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace
+
+TraceFile::TraceFile(const std::string& path, TracedRun run)
+    : run_(std::move(run)),
+      sink_(std::make_unique<ByteSink>(
+          path, ends_in_gz(path) ? ByteSink::Compression::kGzip : ByteSink::Compression::kNone)) {
+  write_line(run_json(run_), *sink_);
+}
+
+TraceFile::~TraceFile() = default;
+
+void TraceFile::on_shape(std::size_t position_index, const std::vector<ShapePoint>& points) {
+  write_line(position_json(run_, position_index, points), *sink_);
+}
+
+void TraceFile::on_alignment(const TracedAlignment& alignment) {
+  write_line(alignment_json(alignment, run_.mapping.align.lcs.target), *sink_);
+}
+
+void TraceFile::on_link(const TracedLink& link) { write_line(link_json(link), *sink_); }
+
+void TraceFile::on_choice(const TracedChoice& choice) { write_line(choice_json(choice), *sink_); }
+
+void TraceFile::commit(const MapResult& result) {
+  // Where each position stands in its fragment: both are in the order of the log.
+  std::vector<std::size_t> next_of_fragment(result.fragments.size(), 0);
+  for (const PositionResult& position : result.positions) {
+    const PlacedPosition* placed = nullptr;
+    if (position.fragment >= 0) {
+      const auto fragment = static_cast<std::size_t>(position.fragment);
+      placed = &result.fragments.at(fragment).positions.at(next_of_fragment[fragment]++);
+    }
+    write_line(result_json(position, placed), *sink_);
+  }
+  write_line(end_json(result), *sink_);
+  sink_->commit();
+}
+
+}  // namespace shapemap

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "trace_json.hpp"
+
+#include "shapemap/core/version.hpp"
+
+namespace shapemap {
+namespace {
+
+Json point_array(const Point2& p) { return Json::array({p.x(), p.y()}); }
+
+Json polylines_json(const SubScan& sub_scan, int index, const MappingOptions& options) {
+  const SubScanShape shape = sub_scan_shape(sub_scan, index, options.returns, options.polylines, options.shape);
+  Json scan_points = Json::array();
+  for (const ScanPoint& point : shape.scan_points) scan_points.push_back(point_array(point.p_m));
+  Json segments = Json::array();
+  for (const LineSegment& s : shape.polylines.segments) {
+    segments.push_back(Json::array({s.start_m.x(), s.start_m.y(), s.end_m.x(), s.end_m.y()}));
+  }
+  return {{"scan_points", scan_points},
+          {"segments", segments},
+          {"closest_segment", shape.polylines.closest_segment},
+          {"em_iterations", shape.polylines.iterations}};
+}
+
+/// Bins and values in turn, without the empty ones, of which there are many.
+Json histograms_json(const std::vector<ShapePoint>& points, const HistogramOptions& options) {
+  Json all = Json::array();
+  const NeighbourDirections directions(Shape{points, 0}, options.radius_m);
+  for (const AngularHistogram& histogram : directions.histograms(0.0, options.norm)) {
+    Json bins = Json::array();
+    for (std::size_t b = 0; b < kHistogramBins; ++b) {
+      if (histogram.bins[b] == 0) continue;
+      bins.push_back(b);
+      bins.push_back(histogram.bins[b]);
+    }
+    all.push_back(bins);
+  }
+  return all;
+}
+
+/// Correspondences as [query point, target position, target point], by their index in the positions' records.
+class PairNames {
+ public:
+  PairNames(const std::vector<TracedTarget>& targets, LcsTarget target) : targets_(targets), target_(target) {}
+
+  Json operator()(const Correspondences& pairs) const {
+    Json all = Json::array();
+    for (const Correspondence& pair : pairs) {
+      std::size_t scan = pair.target_scan;
+      std::size_t point = pair.indices.target;
+      // One long sequence has the points of all scans, one after the other.
+      while (target_ == LcsTarget::kConcatenated && point >= targets_[scan].num_points) {
+        point -= targets_[scan++].num_points;
+      }
+      all.push_back(Json::array({pair.indices.query, targets_.at(scan).position_index, point}));
+    }
+    return all;
+  }
+
+ private:
+  const std::vector<TracedTarget>& targets_;
+  LcsTarget target_;
+};
+
+Json rotation_json(const RotationMatch& match) {
+  std::size_t num_in_segments = 0;
+  for (const Correspondences& segment : match.segments) num_in_segments += segment.size();
+  const bool has_pose = match.translation.num_correspondences > 0;
+  return {{"rotation_rad", match.rotation_rad},
+          {"num_lcs", match.lcs.size()},
+          {"num_spread", match.spread.size()},
+          {"num_in_segments", num_in_segments},
+          {"num_kept", match.translation.num_correspondences},
+          {"mean_distance_m", match.translation.mean_distance_m},
+          {"overlap", match.overlap.num_points},
+          {"target_from_query", has_pose ? pose_array(match.target_from_query()) : Json(nullptr)}};
+}
+
+Json targets_json(const std::vector<TracedTarget>& targets) {
+  Json all = Json::array();
+  for (const TracedTarget& target : targets) {
+    all.push_back({{"position", target.position_index},
+                   {"ref_from_robot", pose_array(target.ref_from_robot)},
+                   {"robot_from_sub_scan", pose_arrays(target.robot_from_sub_scan)}});
+  }
+  return all;
+}
+
+void add_best_rotation(const TracedAlignment& alignment, LcsTarget target, Json& all) {
+  const AlignTrace& steps = alignment.steps;
+  all["best_rotation"] = nullptr;
+  for (const char* name : {"lcs", "spread", "segments", "kept"}) all[name] = Json::array();
+  if (steps.best_rotation < 0) return;
+  const RotationMatch& best = steps.rotations.at(static_cast<std::size_t>(steps.best_rotation));
+  const PairNames names(alignment.targets, target);
+  all["best_rotation"] = steps.best_rotation;
+  all["lcs"] = names(best.lcs);
+  all["spread"] = names(best.spread);
+  for (const Correspondences& segment : best.segments) all["segments"].push_back(names(segment));
+  all["kept"] = names(best.translation.kept);
+}
+
+}  // namespace
+
+Json run_json(const TracedRun& run) {
+  Json options = Json::object();
+  add_options(run.reading, options);
+  add_options(run.selection, options);
+  MappingOptions::groups(run.mapping, [&](const char*, const auto& group) { add_options(group, options); });
+  options.erase("threads");  // part of no result
+  return {{"record", "run"},
+          {"format", "shapemap-trace"},
+          {"format_version", 1},
+          {"shapemap", kVersion},
+          {"log", run.log_path},
+          {"log_format", run.log.format},
+          {"num_positions", run.log.positions.size()},
+          {"histogram_scale", kHistogramScale},
+          {"options", options}};
+}
+
+Json position_json(const TracedRun& run, std::size_t position_index, const std::vector<ShapePoint>& points) {
+  const Position& position = run.log.positions.at(position_index);
+  Json sub_scans = Json::array();
+  for (std::size_t s = 0; s < position.sub_scans.size(); ++s) {
+    sub_scans.push_back(polylines_json(position.sub_scans[s], static_cast<int>(s), run.mapping));
+  }
+  Json shape = Json::array();
+  for (const ShapePoint& p : points) {
+    shape.push_back(Json::array({p.p_m.x(), p.p_m.y(), p.tangent_rad, p.sub_scan}));
+  }
+  Json all = {{"record", "position"},
+              {"index", position_index},
+              {"index_in_whole_log", index_in_whole_log(position_index, run.selection)},
+              {"timestamp_s", number_json(position.timestamp_s)},
+              {"sub_scans", sub_scans},
+              {"points", shape}};
+  if (run.mapping.chain.method == Method::kPaper) {
+    all["histograms"] = histograms_json(points, run.mapping.align.histogram);
+  }
+  return all;
+}
+
+Json alignment_json(const TracedAlignment& alignment, LcsTarget target) {
+  const Alignment& result = alignment.alignment;
+  Json rotations = Json::array();
+  for (const RotationMatch& match : alignment.steps.rotations) rotations.push_back(rotation_json(match));
+  Json all = {{"record", "alignment"},          {"reference", alignment.targets.back().position_index},
+              {"query", alignment.query_index}, {"status", enum_name(result.status)},
+              {"reason", result.reason},        {"targets", targets_json(alignment.targets)},
+              {"rotations", rotations}};
+  add_best_rotation(alignment, target, all);
+  all["shape_ref_from_query"] = pose_array(result.shape_ref_from_query);
+  all["icp_steps"] = pose_arrays(alignment.steps.icp.steps);
+  all["icp_ref_from_query"] = pose_array(result.icp_ref_from_query);
+  all["query_from_sub_scan"] = pose_arrays(result.query_from_sub_scan);
+  all["overlap"] = result.overlap;
+  all["overlap_ratio"] = result.overlap_ratio;
+  return all;
+}
+
+Json link_json(const TracedLink& link) {
+  Json hypotheses = Json::array();
+  for (const PoseHypothesis& hypothesis : link.hypotheses) {
+    hypotheses.push_back(ranked_json(ranked_pose(hypothesis)));
+    hypotheses.back()["covariance"] = covariance_json(pose_covariance(hypothesis.fit));
+  }
+  return {{"record", "link"},
+          {"reference", link.reference_index},
+          {"query", link.query_index},
+          {"num_own", link.num_own},
+          {"hypotheses", hypotheses}};
+}
+
+Json choice_json(const TracedChoice& choice) {
+  return {{"record", "choice"},
+          {"reference", choice.reference_index},
+          {"query", choice.query_index},
+          {"alternative", choice.alternative},
+          {"margin", choice.margin}};
+}
+
+Json result_json(const PositionResult& position, const PlacedPosition* placed) {
+  const Alignment& alignment = position.alignment;
+  return {{"record", "result"},
+          {"index", position.position_index},
+          {"timestamp_s", number_json(position.timestamp_s)},
+          {"fragment", position.fragment},
+          {"starts_fragment", position.starts_fragment},
+          {"status", was_aligned(position) ? Json(enum_name(alignment.status)) : Json(nullptr)},
+          {"reason", position.reason},
+          {"ref_from_query", alignment.has_pose() ? pose_array(alignment.ref_from_query) : Json(nullptr)},
+          {"probability", number_json(alignment.probability)},
+          {"covariance", covariance_json(alignment.covariance)},
+          {"fragment_from_robot", placed ? pose_array(placed->map_from_robot) : Json(nullptr)},
+          {"robot_from_sub_scan", placed ? pose_arrays(placed->robot_from_sub_scan) : Json::array()}};
+}
+
+Json end_json(const MapResult& result) {
+  return {{"record", "end"},
+          {"num_positions", result.positions.size()},
+          {"num_placed", result.placed().size()},
+          {"largest_fragment", result.largest_fragment}};
+}
+
+}  // namespace shapemap

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "json_parts.hpp"
+#include "shapemap/io/trace_file.hpp"
+
+/// The records of a trace.
+namespace shapemap {
+
+Json run_json(const TracedRun& run);
+
+/// `points` are those that the method looks at. Polylines and histograms are made once more, the same way.
+Json position_json(const TracedRun& run, std::size_t position_index, const std::vector<ShapePoint>& points);
+
+Json alignment_json(const TracedAlignment& alignment, LcsTarget target);
+Json link_json(const TracedLink& link);
+Json choice_json(const TracedChoice& choice);
+
+/// `placed` is null for a position that is in no fragment.
+Json result_json(const PositionResult& position, const PlacedPosition* placed);
+
+Json end_json(const MapResult& result);
+
+}  // namespace shapemap
