@@ -63,7 +63,7 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     add("--arg", action="append", default=[], metavar="ARG", help="passed on to the mapper; repeat for more")
     add("--baseline-arg", action="append", default=[], metavar="ARG", help="passed on to the baselines")
     add("--seed", type=number(0, 2**31 - 1, int), default=0, metavar="N", help="of the particle filter (default 0)")
-    add("--most-failures", type=number(0, 1000, int), default=6, metavar="N", help="pictures of failed pairs per run")
+    add("--most-failures", type=number(0, 1000, int), default=6, metavar="N", help="pictures of failed pairs per method and data set")
     add("--snapshot", type=Path, metavar="FILE.md", help="also write the tables there, with the command")
     add("--snapshot-logs", type=name_list, default=[], metavar="LIST", help="logs whose pictures go with it")
     arguments = parser.parse_args(argv)

@@ -23,11 +23,8 @@ BASELINES = ("mrpt-icp", "mrpt-rbpf", "vasco")
 COVARIANCES = "covariances"
 CEILING = "ceiling"
 ALL = (
-    *OURS,
-    *BASELINES,
-    *(f"{name}+robust" for name in BASELINES),
-    f"mrpt-rbpf+{COVARIANCES}",
-    CEILING,
+    *(*OURS, CEILING, "mrpt-icp", "mrpt-icp+robust", "mrpt-rbpf", "mrpt-rbpf+robust", f"mrpt-rbpf+{COVARIANCES}"),
+    *("vasco", "vasco+robust"),
 )
 
 
@@ -58,14 +55,14 @@ def parse_method(name: str) -> Method:
 
 
 def with_feeds(names: list[str]) -> list[Method]:
-    """The methods, each once, after those that they are fed by."""
+    """The methods, each once, with those that they are fed by, in the order of tables."""
     methods: dict[str, Method] = {}
     for name in names:
         method = parse_method(name)
         if method.feed:
             methods.setdefault(method.feed, parse_method(method.feed))
         methods.setdefault(name, method)
-    return sorted(methods.values(), key=lambda method: bool(method.feed))
+    return sorted(methods.values(), key=lambda method: ALL.index(method.name) if method.name in ALL else len(ALL))
 
 
 @dataclass(frozen=True)

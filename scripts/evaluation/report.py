@@ -7,6 +7,7 @@ import argparse
 import base64
 import html
 import shutil
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -45,7 +46,8 @@ def write_report(results: dict[str, Any], logs: dict[str, EvaluationLog], argume
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     tabled = table_sections(results)
-    pictured = [section for log in logs.values() for section in log_sections(results, log, arguments, folder)]
+    drawn: Counter[tuple[str, str]] = Counter()
+    pictured = [section for log in logs.values() for section in log_sections(results, log, arguments, drawn)]
     title = "Evaluation" + ("" if results["complete"] else " (interrupted: not all runs are in it)")
     write_whole(out / "report.html", as_html(title, [*tabled, *pictured]))
     write_whole(out / "report.md", as_markdown(title, [*tabled, *pictured], out))
@@ -91,15 +93,16 @@ def about_section(results: dict[str, Any]) -> Section:
 def comparison_sections(results: dict[str, Any]) -> list[Section]:
     sections = [Section("Comparisons", [tables.PAIRED_NOTES])]
     for title, a, b in tables.questions(results["methods"]):
-        if len(compared := tables.comparison_table(results, a, b)):
-            sections.append(Section(title, [f"A is {a}, B is {b}."], [compared], level=3))
+        text, compared = tables.comparison_table(results, a, b)
+        sections.append(Section(title, [text], [compared], level=3))
     return sections if len(sections) > 1 else []
 
 
 def log_sections(
-    results: dict[str, Any], log: EvaluationLog, arguments: argparse.Namespace, folder: Path
+    results: dict[str, Any], log: EvaluationLog, arguments: argparse.Namespace, drawn: Counter[tuple[str, str]]
 ) -> list[Section]:
-    """Trajectories, errors, maps, and pictures of pairs that failed."""
+    """Trajectories, errors, maps, and pictures of pairs that failed: `drawn` counts these by data set and method."""
+    folder = arguments.out / "pictures"
     runs = [run for run in results["runs"] if run["log"] == log.name]
     methods, folders = results["methods"], {run["method"]: arguments.out / "runs" / log.name / run["method"] for run in runs}
     section = Section(f"{log.name}", [f"{len(log)} positions; {log.spec.sensor}."])
@@ -113,14 +116,19 @@ def log_sections(
     if log.reference is None:
         what = "judged by relations only" if log.relations else "maps and timing only"
         section.text.append(f"No reference poses: {what}.")
-    return [section, *failure_sections(log, runs, arguments.most_failures, folder)]
-
-
-def failure_sections(log: EvaluationLog, runs: Sequence[dict[str, Any]], most: int, folder: Path) -> list[Section]:
-    sections = []
+    sections = [section]
     for run in runs:
-        if run["status"] != "ok" or not most:
-            continue
+        room = arguments.most_failures - drawn[log.spec.group, run["method"]]
+        found = failure_sections(log, run, room, folder)
+        drawn[log.spec.group, run["method"]] += sum(len(each.pictures) for each in found)
+        sections += found
+    return sections
+
+
+def failure_sections(log: EvaluationLog, run: dict[str, Any], most: int, folder: Path) -> list[Section]:
+    """None, or one with at most so many pictures."""
+    sections = []
+    if run["status"] == "ok" and most > 0:
         paths, num_wrong = pictures.save_failures(folder / f"{log.name}_{run['method']}", log, run, most)
         if paths:
             text = f"{num_wrong} of {len(run['pairs']['right'])} pairs are wrong; the first {len(paths)} of them. Grey: "

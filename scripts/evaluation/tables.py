@@ -42,8 +42,8 @@ def metres(value: float) -> str:
     return NONE if pd.isna(value) else f"{value:.2f} m" if value >= 1 else f"{100 * value:.1f} cm"
 
 
-def with_unit(unit: str) -> Callable[[float], str]:
-    return lambda value: NONE if pd.isna(value) else f"{value:.0f} {unit}"
+def with_unit(unit: str, digits: int = 0) -> Callable[[float], str]:
+    return lambda value: NONE if pd.isna(value) else f"{value:.{digits}f} {unit}"
 
 
 SCORE_COLUMNS: dict[str, Callable[[float], str]] = {
@@ -54,7 +54,7 @@ SCORE_COLUMNS: dict[str, Callable[[float], str]] = {
     "map precision": percent,
     "map recall": percent,
 }
-COST_COLUMNS = {"CPU per scan": with_unit("ms"), "memory": with_unit("MiB")}
+COST_COLUMNS = {"CPU per scan": with_unit("ms"), "wall": with_unit("s", 1), "memory": with_unit("MiB")}
 
 
 def _beside(text: str, ceiling: str) -> str:
@@ -76,7 +76,7 @@ def _cells(runs: pd.DataFrame, ceiling: pd.DataFrame) -> dict[str, str]:
 
 
 def summary_table(data: pd.DataFrame, by: str = "group") -> pd.DataFrame:
-    """A row for each method on each data set, or each log; means over its logs. The judged only."""
+    """A row for each method on each data set, or each log; means over its logs."""
     rows = []
     for name in dict.fromkeys(data[by]):
         here = data[data[by] == name]
@@ -96,7 +96,6 @@ def cost_table(data: pd.DataFrame, results: dict[str, Any]) -> pd.DataFrame:
     for run in data[data["log"].isin(without)].to_dict("records"):
         state = "" if run["status"] == "ok" else " FAILED"
         costs = {name: text(run[name]) for name, text in COST_COLUMNS.items()}
-        costs["wall"] = NONE if pd.isna(run["wall"]) else f"{run['wall']:.1f} s"
         placed = f"{run['num_placed']} of {run['num_positions']}"
         rows.append({"data": run["log"], "method": run["method"] + state, "placed": placed, **costs})
     return pd.DataFrame(rows)
@@ -156,13 +155,20 @@ def questions(methods: Sequence[str]) -> list[tuple[str, str, str]]:
     return asked
 
 
-def comparison_table(results: dict[str, Any], method_a: str, method_b: str) -> pd.DataFrame:
-    """Empty where the two have no log in common."""
+def comparison_table(results: dict[str, Any], method_a: str, method_b: str) -> tuple[str, pd.DataFrame]:
+    """What A and B are, and the table; empty where the two have no log in common, or one of them failed on all."""
+    text = f"A is {method_a}, B is {method_b}."
     try:
-        rows = compare(paired_runs(results, results, method_a, method_b, common_only=True))
-    except ResultsError:
-        return pd.DataFrame()
-    return pd.DataFrame([as_cells(row) for row in rows], columns=list(HEAD))
+        runs = paired_runs(results, results, method_a, method_b, common_only=True)
+    except ResultsError as error:
+        return f"{text} {error}.", pd.DataFrame()
+    for count, method in enumerate((method_a, method_b)):
+        num_failed = sum(pair[count]["status"] != "ok" for pair in runs)
+        if num_failed == len(runs):
+            return f"{text} {method} failed on all {num_failed} logs: nothing to compare.", pd.DataFrame()
+        if num_failed:
+            text += f" {method} FAILED on {num_failed} of {len(runs)} logs, which counts as no pair right."
+    return text, pd.DataFrame([as_cells(row) for row in compare(runs)], columns=list(HEAD))
 
 
 NOTES = (
