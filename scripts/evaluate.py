@@ -11,11 +11,14 @@ from __future__ import annotations
 import argparse
 import os
 import shlex
+import signal
 import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
+
+from tqdm import tqdm
 
 from evaluate_arena import parse_seeds
 from evaluation.datasets import PROJECT, DatasetError, LogSpec, read_datasets, select
@@ -27,7 +30,7 @@ from evaluation.schedule import Schedule
 from simulate_arena import number
 
 BIN = PROJECT / "build/release/bin"
-QUICK_LOGS, QUICK_SEEDS, QUICK_TIMEOUT_S = ["demo", "arena"], [0], 30.0
+QUICK_LOGS, QUICK_TIMEOUT_S = ["demo"], 15.0
 EXAMPLE = f"""methods: {", ".join(ALL)};
   BASELINE+robust and BASELINE+paper get our estimated poses as odometry; see docs/evaluation.md
 
@@ -53,7 +56,7 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     add("--only", type=name_list, default=[], metavar="LIST", help="only these data sets or logs")
     add("--seeds", type=parse_seeds, metavar="LIST", help="of the arenas, instead of those in the file, such as 0-4")
     add("--methods", type=name_list, default=list(ALL), metavar="LIST", help="only these (default all, see below)")
-    add("--quick", action="store_true", help="the demo log and one arena, at most 30 s for a run: under two minutes")
+    add("--quick", action="store_true", help="the demo log only, at most 15 s for a run: under two minutes")
     add("--out", type=Path, default=PROJECT / "results/evaluation", metavar="DIR", help="(default results/evaluation)")
     add("--jobs", type=number(1, 256, int), default=os.cpu_count() or 1, metavar="N", help="runs at the same time")
     add("--timeout-s", type=number(0.1, 10**6), default=1800.0, metavar="S", help="for one run (default %(default)g)")
@@ -63,7 +66,13 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     add("--arg", action="append", default=[], metavar="ARG", help="passed on to the mapper; repeat for more")
     add("--baseline-arg", action="append", default=[], metavar="ARG", help="passed on to the baselines")
     add("--seed", type=number(0, 2**31 - 1, int), default=0, metavar="N", help="of the particle filter (default 0)")
-    add("--most-failures", type=number(0, 1000, int), default=6, metavar="N", help="pictures of failed pairs per method and data set")
+    add(
+        "--most-failures",
+        type=number(0, 1000, int),
+        default=6,
+        metavar="N",
+        help="pictures of failed pairs per method and data set",
+    )
     add("--snapshot", type=Path, metavar="FILE.md", help="also write the tables there, with the command")
     add("--snapshot-logs", type=name_list, default=[], metavar="LIST", help="logs whose pictures go with it")
     arguments = parser.parse_args(argv)
@@ -73,7 +82,6 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
         parser.error(f"--methods: {error}")
     if arguments.quick:
         arguments.only = arguments.only or QUICK_LOGS
-        arguments.seeds = arguments.seeds or QUICK_SEEDS
         arguments.timeout_s = min(arguments.timeout_s, QUICK_TIMEOUT_S)
     return arguments
 
@@ -89,10 +97,10 @@ def logs_at_hand(arguments: argparse.Namespace) -> tuple[list[EvaluationLog], li
         read_datasets(arguments.datasets, Path(folder) if folder else None, arguments.seeds), arguments.only
     )
     logs, skipped = [], []
-    for spec in specs:
+    for spec in tqdm(specs, desc="reading", disable=None, leave=False):
         if spec.missing:
             why = ", ".join(str(path) for path in spec.missing)
-            skipped.append({"name": spec.name, "missing": why})
+            skipped.append({"name": spec.name, "missing": ", ".join(path.name for path in spec.missing)})
             complain(f"SKIPPED {spec.name}, missing: {why}")
         else:
             logs.append(load(spec, arguments.out / "logs", arguments.cli))
@@ -155,4 +163,9 @@ def main(argv: list[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends as Ctrl-C does
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:  # before the first run, or in the middle of the report
+        complain("interrupted; --resume keeps the runs that are done")
+        sys.exit(130)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Two methods, or two versions of one, compared on the same data: every number is a difference over the same logs, seeds
-and pairs, with its interval.
+"""Two methods, or two versions of one, compared on the same data: every number is a difference over the same logs,
+seeds and pairs, with its interval.
 
 What is drawn independently is resampled: of a data set with many logs (the seeds of an arena) the logs, of a single log
-its pairs of positions or its relations. Single logs stay as they are, so the interval of all says how sure the difference
-is on these logs, not on others. What there is one number of per log (ATE, memory) is resampled over logs.
+its pairs of positions or its relations. Single logs stay as they are, so the interval of all says how sure the
+difference is on these logs, not on others. What there is one number of per log (ATE, memory) is resampled over logs.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from .results import ResultsError
 from .paired import Difference, Sample, paired_difference, sign_test
+from .results import ResultsError
 
 Run = dict[str, Any]
 FEWEST_LOGS = 4  # for an interval over logs
@@ -85,15 +85,20 @@ def paired_runs(
     single = sorted(set(runs_a) ^ set(runs_b))
     if single and not common_only:
         raise ResultsError(f"only one of the two has {', '.join(single)}; see --common")
-    both = [log for log in runs_a if log in runs_b]
+    both = [(runs_a[log], runs_b[log]) for log in runs_a if log in runs_b]
     if not both:
         raise ResultsError("no log in common")
-    for log in both:
-        if runs_a[log]["sha256"] != runs_b[log]["sha256"]:
-            raise ResultsError(f"{log}: not the same data in both")
-        if runs_a[log]["seed"] != runs_b[log]["seed"] and None not in (runs_a[log]["seed"], runs_b[log]["seed"]):
-            raise ResultsError(f"{log}: seeds {runs_a[log]['seed']} and {runs_b[log]['seed']}")
-    return [(runs_a[log], runs_b[log]) for log in both]
+    for a, b in both:
+        _check_same_data(a, b)
+    return both
+
+
+def _check_same_data(a: Run, b: Run) -> None:
+    """Raises ResultsError. Our methods draw nothing and have no seed."""
+    if a["sha256"] != b["sha256"]:
+        raise ResultsError(f"{a['log']}: not the same data in both")
+    if None not in (a["seed"], b["seed"]) and a["seed"] != b["seed"]:
+        raise ResultsError(f"{a['log']}: seed {a['seed']} and {b['seed']}")
 
 
 def compare(pairs_of_runs: Sequence[tuple[Run, Run]]) -> list[Row]:
@@ -213,7 +218,7 @@ def _row(
 
 def as_cells(row: Row) -> list[str]:
     """For a table."""
-    share, metres = row.unit == "" , row.unit == "m"
+    share, metres = row.unit == "", row.unit == "m"
     scale, unit, digits = (100.0, " %", 1) if share else (100.0, " cm", 1) if metres else (1.0, f" {row.unit}", 2)
     values = row.difference
     interval = "too few for one"

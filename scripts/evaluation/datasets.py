@@ -101,7 +101,9 @@ def _expand(entry: dict[str, Any], datasets: Path | None, seeds: list[int] | Non
         return [LogSpec(f"{name}-{seed:03d}", name, seed=seed, arena=arena, **common) for seed in chosen]
     folder = _folder(entry.get("root", "datasets"), datasets)
     path = folder / entry["path"]
-    relations = tuple(folder / other for other in entry["relations"]) if "relations" in entry else relations_beside(path)
+    relations = (
+        tuple(folder / other for other in entry["relations"]) if "relations" in entry else relations_beside(path)
+    )
     return [LogSpec(name, name, path=path, relations=relations, **common)]
 
 

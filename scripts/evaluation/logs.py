@@ -86,8 +86,8 @@ def renumbered(text: str, every: int = 1, first: int = 0) -> tuple[list[float], 
     times: list[float] = []
     lines: list[str] = []
     num_used, used = 0, True
-    for line in text.splitlines():
-        words = line.split()
+    for original in text.splitlines():
+        line, words = original, original.split()
         if words and words[0] in _TIME_FIELDS:
             at = _TIME_FIELDS[words[0]](words)
             used = len(times) % every == 0 and (not first or num_used < first)
@@ -118,7 +118,7 @@ def source_file(spec: LogSpec, folder: Path, cli: Path) -> Path:
     elif spec.path.name.endswith(".rawlog"):
         convert_rawlog(spec.path, made, cli)
     else:
-        convert_recording(spec, made)
+        convert_recording(spec.path, spec.angle_step_deg, made)
     return made
 
 
@@ -141,18 +141,17 @@ def simulate(spec: LogSpec, made: Path) -> None:
     write_whole(made, nist_text(simulation))
 
 
-def convert_recording(spec: LogSpec, made: Path) -> None:
+def convert_recording(path: Path, angle_step_deg: float | None, made: Path) -> None:
     import convert_logs
     from shapemap_sim.write import write_whole
 
-    assert spec.path is not None
-    step = [] if spec.angle_step_deg is None else [f"--angle-step-deg={spec.angle_step_deg}"]
-    arguments = convert_logs.parse_arguments([str(spec.path), str(made), *step])
+    step = [] if angle_step_deg is None else [f"--angle-step-deg={angle_step_deg}"]
+    arguments = convert_logs.parse_arguments([str(path), str(made), *step])
     try:
-        recording, _ = convert_logs.read(spec.path, arguments)
+        recording, _ = convert_logs.read(path, arguments)
     except convert_logs.UnknownLogError as error:
         raise DatasetError(str(error)) from None
-    write_whole(made, convert_logs.text_of(replace(recording, references=None), spec.path.name))
+    write_whole(made, convert_logs.text_of(replace(recording, references=None), path.name))
 
 
 def convert_rawlog(path: Path, made: Path, cli: Path) -> None:

@@ -25,7 +25,7 @@ def occupied_cells(poses: Mapping[int, Array], points: Sequence[Array]) -> Array
         return np.zeros((0, 2))
     returns = np.concatenate([transform(pose, points[position]) for position, pose in poses.items()])
     cells = np.unique(np.floor(returns / CELL_M).astype(np.int64), axis=0)
-    return (cells + 0.5) * CELL_M
+    return np.asarray((cells + 0.5) * CELL_M, dtype=np.float64)
 
 
 def share_near(cells: Array, others: Array, within_m: float = WITHIN_M) -> float | None:

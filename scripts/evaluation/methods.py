@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Methods that can be evaluated, by name, and the commands that run them.
 
-    robust, paper               shapemap itself
-    mrpt-icp, mrpt-rbpf, vasco  baselines that get nothing but the scans
-    BASELINE+robust, +paper     the same with our estimated poses as odometry
-    mrpt-rbpf+covariances       the particle filter with the robust method's motions and covariances as its motion model
-    ceiling                     consecutive scans aligned by the refinement of the robust method, started at the
-                                reference pose; needs reference poses
+robust, paper               shapemap itself
+mrpt-icp, mrpt-rbpf, vasco  baselines that get nothing but the scans
+BASELINE+robust, +paper     the same with our estimated poses as odometry
+mrpt-rbpf+covariances       the particle filter with the robust method's motions and covariances as its motion model
+ceiling                     consecutive scans aligned by the refinement of the robust method, started at the
+                            reference pose; needs reference poses
 """
 
 from __future__ import annotations

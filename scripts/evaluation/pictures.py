@@ -17,6 +17,7 @@ from pair_evaluation.pictures import save_failure
 from shapemap_sim.poses import Array, compose, inverse
 
 from .logs import EvaluationLog
+from .map_agreement import occupied_cells
 from .methods import CEILING
 from .trajectories import Fragment, from_lists
 
@@ -54,7 +55,9 @@ def save_trajectories(path: Path, log: EvaluationLog, runs: Sequence[Run], metho
         if log.reference is not None:
             axes.plot(log.reference[:, 0], log.reference[:, 1], "-", color="#b0b0b0", linewidth=3)
         path_xy = _in_reference(run)
-        axes.plot(path_xy[:, 0], path_xy[:, 1], ".-", color=colour_of(run["method"], methods), markersize=2, linewidth=1)
+        axes.plot(
+            path_xy[:, 0], path_xy[:, 1], ".-", color=colour_of(run["method"], methods), markersize=2, linewidth=1
+        )
         error = f", ATE {run['ate']['rmse_m']:.2f} m" if run["ate"] else ""
         axes.set_title(f"{run['method']}{error}", fontsize=9)
         axes.set_aspect("equal", adjustable="datalim")
@@ -94,21 +97,31 @@ def save_errors(path: Path, runs: Sequence[Run], methods: Sequence[str]) -> bool
     return True
 
 
-def save_maps(path: Path, runs: Sequence[Run], folder_of_run: dict[str, Path]) -> bool:
-    """The maps that the programs drew, side by side, each to its own scale. False without any."""
+def save_maps(path: Path, log: EvaluationLog, runs: Sequence[Run], folder_of_run: dict[str, Path]) -> bool:
+    """The maps that the programs drew, side by side, each to its own scale, and the cells that are occupied at the
+    reference poses. False without any map."""
     with_map = [run for run in runs if (folder_of_run[run["method"]] / "map.png").exists()]
     if not with_map:
         return False
-    num_rows = -(-len(with_map) // COLUMNS)
+    num_panels = len(with_map) + (log.reference is not None)
+    num_rows = -(-num_panels // COLUMNS)
     figure = Figure(figsize=(4 * COLUMNS, 3.6 * num_rows), layout="constrained")
     panels = figure.subplots(num_rows, COLUMNS, squeeze=False).ravel()
     for axes in panels:
         axes.set_axis_off()
     for axes, run in zip(panels, with_map):
-        image = imread(folder_of_run[run["method"]] / "map.png")
-        image = image[..., 0] if image.ndim == 3 else image
-        axes.imshow(shrunk(image), cmap="gray", vmin=0, vmax=1)
-        axes.set_title(run["method"], fontsize=9)
+        try:
+            image = imread(folder_of_run[run["method"]] / "map.png")
+            axes.imshow(shrunk(image[..., 0] if image.ndim == 3 else image), cmap="gray", vmin=0, vmax=1)
+            axes.set_title(run["method"], fontsize=9)
+        except (OSError, SyntaxError, ValueError):  # the baselines' own pictures cost no report
+            axes.set_title(f"{run['method']}: unreadable map", fontsize=9)
+    if log.reference is not None:
+        cells = occupied_cells(dict(enumerate(log.reference)), log.content.points)
+        axes = panels[len(with_map)]
+        axes.plot(cells[:, 0], cells[:, 1], ",", color="black")
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_title("returns at the reference poses", fontsize=9)
     figure.savefig(path, dpi=DPI)
     return True
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import signal
@@ -70,8 +71,6 @@ def run_measured(command: Sequence[object], folder: Path, timeout_s: float) -> U
 
 def _end_group(process: subprocess.Popen[bytes]) -> None:
     """The program and whatever it started, if they still run."""
-    try:
+    with contextlib.suppress(ProcessLookupError, PermissionError):
         os.killpg(process.pid, signal.SIGKILL)
-    except (ProcessLookupError, PermissionError):
-        pass
     process.wait()

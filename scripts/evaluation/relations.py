@@ -105,7 +105,9 @@ def _scan(number: float, index: ScanIndex, where: str) -> int:
     return int(number)
 
 
-def relation_errors(relations: Sequence[Relation], fragments: Sequence[Mapping[int, Array]]) -> list[list[float] | None]:
+def relation_errors(
+    relations: Sequence[Relation], fragments: Sequence[Mapping[int, Array]]
+) -> list[list[float] | None]:
     """Metres and degrees of each relation; None where not both of its scans are placed in one fragment."""
     errors: list[list[float] | None] = []
     for relation in relations:

@@ -104,14 +104,17 @@ def log_sections(
     """Trajectories, errors, maps, and pictures of pairs that failed: `drawn` counts these by data set and method."""
     folder = arguments.out / "pictures"
     runs = [run for run in results["runs"] if run["log"] == log.name]
-    methods, folders = results["methods"], {run["method"]: arguments.out / "runs" / log.name / run["method"] for run in runs}
+    methods, folders = (
+        results["methods"],
+        {run["method"]: arguments.out / "runs" / log.name / run["method"] for run in runs},
+    )
     section = Section(f"{log.name}", [f"{len(log)} positions; {log.spec.sensor}."])
     paths = {kind: folder / f"{log.name}_{kind}.png" for kind in ("trajectories", "errors", "maps")}
     if pictures.save_trajectories(paths["trajectories"], log, runs, methods):
         section.pictures.append((paths["trajectories"], f"{log.name}: trajectories (reference grey)"))
     if pictures.save_errors(paths["errors"], runs, methods):
         section.pictures.append((paths["errors"], f"{log.name}: position errors, and errors of pairs"))
-    if pictures.save_maps(paths["maps"], runs, folders):
+    if pictures.save_maps(paths["maps"], log, runs, folders):
         section.pictures.append((paths["maps"], f"{log.name}: the maps that the programs drew"))
     if log.reference is None:
         what = "judged by relations only" if log.relations else "maps and timing only"
@@ -131,7 +134,9 @@ def failure_sections(log: EvaluationLog, run: dict[str, Any], most: int, folder:
     if run["status"] == "ok" and most > 0:
         paths, num_wrong = pictures.save_failures(folder / f"{log.name}_{run['method']}", log, run, most)
         if paths:
-            text = f"{num_wrong} of {len(run['pairs']['right'])} pairs are wrong; the first {len(paths)} of them. Grey: "
+            text = (
+                f"{num_wrong} of {len(run['pairs']['right'])} pairs are wrong; the first {len(paths)} of them. Grey: "
+            )
             text += "the scan before; left the reference pose, right what was found."
             shown = [(path, f"{log.name}, {run['method']}: {path.stem}") for path in paths]
             sections.append(Section(f"{log.name}: failures of {run['method']}", [text], [], shown, level=3))
@@ -169,7 +174,9 @@ def failed_class(text: str) -> str:
 def picture_html(path: Path, caption: str) -> str:
     data = base64.b64encode(path.read_bytes()).decode("ascii")
     caption = html.escape(caption)
-    return f'<figure><img alt="{caption}" src="data:image/png;base64,{data}"><figcaption>{caption}</figcaption></figure>'
+    return (
+        f'<figure><img alt="{caption}" src="data:image/png;base64,{data}"><figcaption>{caption}</figcaption></figure>'
+    )
 
 
 def write_snapshot(

@@ -48,7 +48,9 @@ class Job:
     def key(self) -> str:
         """Changes with all that the result depends on: --resume does again what has another key."""
         programs = self.programs
-        used = [programs.cli] if self.method.is_ours or self.method.name == CEILING else [programs.cli, programs.baselines]
+        used = (
+            [programs.cli] if self.method.is_ours or self.method.name == CEILING else [programs.cli, programs.baselines]
+        )
         parts = [self.log.sha256, self.method.name, [file_sha256(path) for path in used], self.timeout_s]
         parts += [programs.arguments, programs.baseline_arguments, programs.seed, self.log.spec.keeps_heading]
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import statistics
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -24,14 +25,20 @@ def frame(results: dict[str, Any]) -> pd.DataFrame:
         right = run["pairs"]["right"] if run["pairs"] else []
         seconds = (run["usage"] or {}).get("cpu_s")
         row = {key: run[key] for key in ("group", "log", "method", "status", "reason", "num_positions", "num_placed")}
-        row |= {"num_right": sum(right), "num_pairs": len(right)}
+        row |= {"num_right": sum(right), "num_pairs": len(right), "median error": median_error(run)}
         row |= {score.name: score.of(run) for score in LOG_SCORES}
         row["CPU per scan"] = None if seconds is None else 1000.0 * seconds / max(1, run["num_positions"])
         row["wall"] = (run["usage"] or {}).get("wall_s")
         rows.append(row)
     data = pd.DataFrame(rows)
-    numbers = [*(score.name for score in LOG_SCORES), "CPU per scan", "wall"]
+    numbers = ["median error", *(score.name for score in LOG_SCORES), "CPU per scan", "wall"]
     return data.astype(dict.fromkeys(numbers, float)) if rows else data
+
+
+def median_error(run: dict[str, Any]) -> float | None:
+    """Of the pairs with both positions in one fragment."""
+    errors = [error for error in run["pairs"]["error_m"] if error is not None] if run["pairs"] else []
+    return statistics.median(errors) if errors else None
 
 
 def percent(value: float) -> str:
@@ -47,6 +54,7 @@ def with_unit(unit: str, digits: int = 0) -> Callable[[float], str]:
 
 
 SCORE_COLUMNS: dict[str, Callable[[float], str]] = {
+    "median error": metres,
     "coverage": percent,
     "ATE": metres,
     "RPE": metres,
@@ -59,7 +67,7 @@ COST_COLUMNS = {"CPU per scan": with_unit("ms"), "wall": with_unit("s", 1), "mem
 
 def _beside(text: str, ceiling: str) -> str:
     """`87.0 % [ceiling 99.0 %]`, as far as there is one."""
-    return f"{text} [{ceiling}]" if ceiling != NONE and text != NONE else text
+    return f"{text} [{ceiling}]" if NONE not in (ceiling, text) else text
 
 
 def _cells(runs: pd.DataFrame, ceiling: pd.DataFrame) -> dict[str, str]:
@@ -173,11 +181,11 @@ def comparison_table(results: dict[str, Any], method_a: str, method_b: str) -> t
 
 NOTES = (
     "Right pairs: consecutive positions whose relative pose is within 0.20 m and 5 degrees of the reference, of all "
-    "pairs, with Wilson's interval; a position without a place fails its pairs. In square brackets: the ceiling, what "
-    "the refinement of the robust method (ICP to lines) reaches when it starts at the reference pose, chained. ATE: root "
-    "mean square position error after alignment in the plane. RPE: that of the motion between placed positions, and "
-    "over 10 m of path; both by evo. Map precision and recall: occupied 5 cm cells within 10 cm of one of the map at "
-    "reference poses, and the other way round. Scores of maps are means over the runs that gave one; CPU and memory "
-    "are those of the program."
+    "pairs, with Wilson's interval; a position without a place fails its pairs; median error: of those placed. In "
+    "square brackets: the ceiling, what the refinement of the robust method (ICP to lines) reaches when it starts at "
+    "the reference pose, chained. ATE: root mean square position error after alignment in the plane. RPE: that of the "
+    "motion between placed positions, and over 10 m of path; both by evo. Map precision and recall: occupied 5 cm "
+    "cells within 10 cm of one of the map at reference poses, and the other way round. Scores of maps are means over "
+    "the runs that gave one; CPU, wall time and memory are those of the program, with the others beside it."
 )
 PAIRED_NOTES = EXPLANATION
