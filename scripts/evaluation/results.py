@@ -30,9 +30,10 @@ class ResultsError(ValueError):
 
 
 def git(*words: str) -> str:
-    """Empty outside of a checkout."""
+    """What git says of the project; empty outside of a checkout."""
+    command = ["git", "-C", str(PROJECT), *words]
     try:
-        done = subprocess.run(["git", "-C", str(PROJECT), *words], capture_output=True, text=True, check=False)  # noqa: S607
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
     except OSError:
         return ""
     return done.stdout.strip() if done.returncode == 0 else ""
