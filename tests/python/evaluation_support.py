@@ -14,7 +14,7 @@ from evaluation.methods import Programs, parse_method
 from evaluation.runs import Job
 
 NUM_SCANS = 6
-SECRET = "7.125"  # stands in every odometry field
+ODOMETRY = "7.125"  # stands in every odometry field
 
 # Places position k at (k, 0), but the last one a metre too far. Knows --help, mapping and `align`.
 MAPPER = f"""import json, sys
@@ -23,7 +23,7 @@ if '--help' in words:
     print('  --motions FILE  the motions' if MOTIONS else '  --out FILE')
     sys.exit()
 log = open(words[1] if words[0] == 'align' else words[0]).read()
-if '{SECRET}' in log or ' reference ' in log:
+if '{ODOMETRY}' in log or ' reference ' in log:
     sys.exit('got odometry or poses')
 num = sum(line.startswith(('FLASER', 'position')) for line in log.splitlines())
 if words[0] == 'align':
@@ -72,8 +72,8 @@ def carmen_text(num_scans: int = NUM_SCANS) -> str:
     lines = []
     for k in range(num_scans):
         ranges = " ".join(f"{2 + 0.01 * (beam + k):.2f}" for beam in range(180))
-        pose = f"{k}.0 0.0 0.0 {SECRET} {SECRET} {SECRET}"
-        lines += [f"ODOM {k}.0 {SECRET} 0 0 0 0 {k} robot {k}", f"FLASER 180 {ranges} {pose} {k + 10}.5 robot {k}.5"]
+        pose = f"{k}.0 0.0 0.0 {ODOMETRY} {ODOMETRY} {ODOMETRY}"
+        lines += [f"ODOM {k}.0 {ODOMETRY} 0 0 0 0 {k} robot {k}", f"FLASER 180 {ranges} {pose} {k + 10}.5 robot {k}.5"]
     return "\n".join(lines) + "\n"
 
 

@@ -12,7 +12,7 @@ import pytest
 from evaluation.datasets import PROJECT, DatasetError, LogSpec, read_datasets, select
 from evaluation.logs import load, renumbered
 from evaluation.methods import ALL, parse_method, with_feeds
-from evaluation_support import SECRET, carmen_text, line_log
+from evaluation_support import ODOMETRY, carmen_text, line_log
 
 NO_CLI = Path("/no/cli")
 
@@ -88,7 +88,7 @@ def test_a_name_that_there_is_not_is_refused(tmp_path: Path) -> None:
 def test_programs_get_no_pose_no_odometry_and_times_of_their_own(tmp_path: Path) -> None:
     log = line_log(tmp_path)
     text = log.write_stripped(tmp_path).read_text(encoding="utf-8")
-    assert SECRET not in text
+    assert ODOMETRY not in text
     assert "ODOM" not in text
     assert [line.split()[182:] for line in text.splitlines()] == [
         [*["0"] * 6, f"{k}.0", "host", f"{k}.0"] for k in range(1, 7)
