@@ -87,7 +87,7 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
 
 
 def complain(text: str) -> None:
-    print(f"evaluate.py: {text}", file=sys.stderr)
+    tqdm.write(f"evaluate.py: {text}", file=sys.stderr)  # beside a progress bar, if there is one
 
 
 def logs_at_hand(arguments: argparse.Namespace) -> tuple[list[EvaluationLog], list[dict[str, str]]]:

@@ -21,6 +21,7 @@ from .programs import Failure, has_option
 OURS = ("robust", "paper")
 BASELINES = ("mrpt-icp", "mrpt-rbpf", "vasco")
 COVARIANCES = "covariances"
+WITH_COVARIANCES = ("mrpt-rbpf", "vasco")  # they have a motion model
 CEILING = "ceiling"
 ALL = (
     *(*OURS, CEILING, "mrpt-icp", "mrpt-icp+robust", "mrpt-rbpf", "mrpt-rbpf+robust", f"mrpt-rbpf+{COVARIANCES}"),
@@ -49,9 +50,11 @@ def parse_method(name: str) -> Method:
         return Method(name, base)
     if base in BASELINES and feed in OURS:
         return Method(name, base, feed)
-    if base == "mrpt-rbpf" and feed == COVARIANCES:
+    if base in WITH_COVARIANCES and feed == COVARIANCES:
         return Method(name, base, "robust", True)
-    raise ValueError(f"no method '{name}'; there are {', '.join(ALL)}, and +paper instead of +robust")
+    raise ValueError(
+        f"no method '{name}'; there are {', '.join(ALL)}, vasco+covariances, and each +robust with +paper instead"
+    )
 
 
 def with_feeds(names: list[str]) -> list[Method]:

@@ -163,6 +163,6 @@ def test_methods_come_with_those_that_feed_them() -> None:
     assert [m.name for m in with_feeds(["mrpt-rbpf+covariances"])] == ["robust", "mrpt-rbpf+covariances"]
     assert [m.name for m in with_feeds(list(reversed(ALL)))] == list(ALL)
     assert parse_method("mrpt-rbpf+covariances").needs_covariances
-    for name in ("best", "robust+paper", "vasco+covariances", "vasco+", "+robust", ""):
+    for name in ("best", "robust+paper", "mrpt-icp+covariances", "vasco+", "+robust", ""):
         with pytest.raises(ValueError, match="no method"):
             parse_method(name)
