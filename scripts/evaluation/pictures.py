@@ -25,7 +25,6 @@ Run = dict[str, Any]
 COLUMNS = 3
 DPI = 80
 MAX_MAP_PX = 700
-OCCUPIED = 0.25  # darker pixels of a map
 
 
 def colour_of(method: str, methods: Sequence[str]) -> Any:
@@ -113,8 +112,7 @@ def save_maps(path: Path, log: EvaluationLog, runs: Sequence[Run], folder_of_run
     for axes, run in zip(panels, with_map):
         try:
             image = imread(folder_of_run[run["method"]] / "map.png")
-            image = shrunk(cropped(image[..., 0] if image.ndim == 3 else image))
-            axes.imshow(image, cmap="gray", vmin=0, vmax=1)
+            axes.imshow(shrunk(image[..., 0] if image.ndim == 3 else image), cmap="gray", vmin=0, vmax=1)
             axes.set_title(run["method"], fontsize=9)
         except (OSError, SyntaxError, ValueError):  # the baselines' own pictures cost no report
             axes.set_title(f"{run['method']}: unreadable map", fontsize=9)
@@ -122,28 +120,10 @@ def save_maps(path: Path, log: EvaluationLog, runs: Sequence[Run], folder_of_run
         cells = occupied_cells(dict(enumerate(log.reference)), log.content.points)
         axes = panels[len(with_map)]
         axes.plot(cells[:, 0], cells[:, 1], ",", color="black")
-        (left, right), (bottom, top) = most_of(cells[:, 0]), most_of(cells[:, 1])
-        axes.set(xlim=(left, right), ylim=(bottom, top))
         axes.set_aspect("equal", adjustable="datalim")
         axes.set_title("returns at the reference poses", fontsize=9)
     figure.savefig(path, dpi=DPI)
     return True
-
-
-def most_of(values: Array) -> tuple[float, float]:
-    """Limits that hold all but the far: the middle 98 % and a tenth more on each side."""
-    low, high = (float(value) for value in np.percentile(values, [1, 99])) if len(values) else (0.0, 1.0)
-    margin = max(0.1 * (high - low), 1.0)
-    return low - margin, high + margin
-
-
-def cropped(image: Array) -> Array:
-    """Without the far ends of beams that left through a door: they would make the rest tiny."""
-    rows, columns = np.nonzero(image < OCCUPIED)
-    (top, bottom), (left, right) = most_of(rows.astype(float)), most_of(columns.astype(float))
-    if not len(rows):
-        return image
-    return image[max(0, int(top)) : int(bottom) + 1, max(0, int(left)) : int(right) + 1]
 
 
 def shrunk(image: Array) -> Array:
