@@ -17,10 +17,22 @@ REFERENCES = {
     "relations": "relations made by hand, no poses",
     "none": "none: maps and timing only",
 }
+WITH_POSES = ("exact", "slam")
 ROOTS = ("datasets", "project", "mrpt")
 ARENA_OPTIONS = ("positions", "spacing_m", "heading_uncertainty_deg", "clutter")
 KEYS = (
-    *("name", "path", "root", "simulate", "seeds", "sensor", "reference", "relations", "keeps_heading"),
+    *(
+        "name",
+        "path",
+        "root",
+        "simulate",
+        "seeds",
+        "sensor",
+        "reference",
+        "reference_file",
+        "relations",
+        "keeps_heading",
+    ),
     *("angle_step_deg", "every", "first", *ARENA_OPTIONS),
 )
 
@@ -39,6 +51,7 @@ class LogSpec:
     reference: str
     path: Path | None = None
     seed: int | None = None
+    reference_file: Path | None = None
     relations: tuple[Path, ...] = ()
     keeps_heading: bool = False
     angle_step_deg: float | None = None
@@ -49,7 +62,7 @@ class LogSpec:
     @property
     def files(self) -> list[Path]:
         """All that must be there."""
-        return [*([self.path] if self.path else []), *self.relations]
+        return [*(path for path in (self.path, self.reference_file) if path), *self.relations]
 
     @property
     def missing(self) -> list[Path]:
@@ -87,6 +100,8 @@ def _check(entry: dict[str, Any], where: str) -> None:
         raise DatasetError(f"{where}: root '{entry['root']}', expected one of {', '.join(ROOTS)}")
     if ("path" in entry) == ("simulate" in entry):
         raise DatasetError(f"{where}: expected either path or simulate")
+    if "reference_file" in entry and entry["reference"] not in WITH_POSES:
+        raise DatasetError(f"{where}: a reference_file, but reference is '{entry['reference']}'")
     if entry.get("simulate", "arena") != "arena":
         raise DatasetError(f"{where}: simulate '{entry['simulate']}', expected arena")
 
@@ -104,7 +119,8 @@ def _expand(entry: dict[str, Any], datasets: Path | None, seeds: list[int] | Non
     relations = (
         tuple(folder / other for other in entry["relations"]) if "relations" in entry else relations_beside(path)
     )
-    return [LogSpec(name, name, path=path, relations=relations, **common)]
+    poses = folder / entry["reference_file"] if "reference_file" in entry else None
+    return [LogSpec(name, name, path=path, reference_file=poses, relations=relations, **common)]
 
 
 def read_datasets(path: Path, datasets: Path | None, seeds: list[int] | None = None) -> list[LogSpec]:

@@ -14,14 +14,16 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import numpy as np
+
 from pair_evaluation.reference_log import ReferenceLog, read_reference_log
+from shapemap_sim.outcomes import parse_tum
 from shapemap_sim.poses import Array
 
-from .datasets import DatasetError, LogSpec
+from .datasets import WITH_POSES, DatasetError, LogSpec
 from .relations import RelationFile, ScanIndex, read_relations
 
 RECORDINGS = (".bag", ".dat.gz", ".txt.gz", ".dat")  # what scripts/convert_logs.py reads
-WITH_POSES = ("exact", "slam")
 
 
 @dataclass(frozen=True)
@@ -53,11 +55,13 @@ def load(spec: LogSpec, folder: Path, cli: Path) -> EvaluationLog:
     one) or OSError."""
     path = source_file(spec, folder, cli)
     try:
-        whole = read_reference_log(path, needs_poses=spec.reference in WITH_POSES)
+        whole = read_reference_log(path, needs_poses=spec.reference in WITH_POSES and not spec.reference_file)
     except (ValueError, IndexError, KeyError) as error:
         text = str(error)
         raise DatasetError(text if str(path.name) in text else f"{path}: {text}") from None
     times, text = renumbered(whole.without_poses, spec.every, spec.first)
+    if spec.reference_file:
+        whole = replace(whole, map_from_robot=read_reference_file(spec.reference_file, times))
     kept = slice(None, spec.first * spec.every if spec.first else None, spec.every)
     content = replace(
         whole,
@@ -70,6 +74,30 @@ def load(spec: LogSpec, folder: Path, cli: Path) -> EvaluationLog:
     relations = [read_relations(other, index) for other in spec.relations]
     reference = content.map_from_robot if spec.reference in WITH_POSES else None
     return EvaluationLog(spec, content, reference, relations, checksum(text, reference, relations))
+
+
+def read_reference_file(path: Path, times: list[float]) -> Array:
+    """Poses `[p, 3]` of all scans of the whole log, from TUM lines with its times. Raises DatasetError that names file
+    and line, or the first scan without a pose."""
+    index = ScanIndex(times, 1, len(times))
+    poses = np.full((len(times), 3), np.nan)
+    for number, line in enumerate(path.read_text(encoding="utf-8", errors="replace").splitlines(), 1):
+        if not line.strip() or line.startswith("#"):
+            continue
+        try:
+            ((time_s, pose),) = parse_tum(line).items()
+        except ValueError:
+            raise DatasetError(f"{path}:{number}: expected t x y z qx qy qz qw, found '{line.strip()}'") from None
+        if not np.isfinite(pose).all():
+            raise DatasetError(f"{path}:{number}: not finite: {line.strip()}")
+        if (scan := index.scan_at(time_s)) is not None:
+            poses[scan] = pose
+    without = np.flatnonzero(np.isnan(poses[:, 0]))
+    if len(without):
+        raise DatasetError(
+            f"{path}: no pose for {len(without)} scans; the first is {without[0]}, {times[without[0]]} s"
+        )
+    return poses
 
 
 def checksum(text: str, reference: Array | None, relations: list[RelationFile]) -> str:

@@ -71,6 +71,7 @@ def test_relations_beside_a_log_are_found(tmp_path: Path) -> None:
         (entry(path=None), "expected either path or simulate"),
         (entry(path=None, simulate="maze"), "simulate 'maze', expected arena"),
         (entry(root="home"), "root 'home'"),
+        (entry(reference="none", reference_file="a.tum"), "a reference_file, but reference is 'none'"),
     ],
 )
 def test_a_wrong_file_of_data_sets_is_refused(tmp_path: Path, text: str, what: str) -> None:
@@ -146,6 +147,24 @@ def test_a_malformed_reference_of_a_scan_log_names_file_and_line(tmp_path: Path)
         path.write_text(text, encoding="utf-8")
         with pytest.raises(DatasetError, match=r"a\.nist:4: "):
             load(LogSpec("a", "a", "", "exact", path=path), tmp_path, NO_CLI)
+
+
+def test_references_may_be_in_a_file_of_their_own(tmp_path: Path) -> None:
+    path = tmp_path / "poses.tum"
+    lines = [f"{k + 10}.5 {k} 7 0 0 0 {np.sin(0.3)} {np.cos(0.3)}\n" for k in reversed(range(6))]
+    path.write_text("# t x y z qx qy qz qw\n" + "".join(lines), encoding="utf-8")
+    log = line_log(tmp_path, reference_file=path, every=2)
+    assert log.reference == pytest.approx(np.array([[0.0, 7.0, 0.6], [2.0, 7.0, 0.6], [4.0, 7.0, 0.6]]))
+    assert log.content.ref_from_query(0, 1)[2] == pytest.approx(0.0)
+    for text, what in (
+        ("".join(lines[1:]), ": no pose for 1 scans; the first is 5, 15.5 s"),
+        ("".join(lines) + "1 2 3\n", ":7: expected t x y z qx qy qz qw"),
+        ("".join(lines) + "1 nan 0 0 0 0 0 1\n", ":7: not finite"),
+    ):
+        path.write_text(text, encoding="utf-8")
+        with pytest.raises(DatasetError) as caught:
+            line_log(tmp_path, reference_file=path)
+        assert f"{path}{what}" in str(caught.value)
 
 
 def test_an_arena_is_simulated_with_its_options(tmp_path: Path) -> None:
