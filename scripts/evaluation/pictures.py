@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -136,13 +137,27 @@ def shrunk(image: Array) -> Array:
     return blocks.min(axis=(1, 3))
 
 
-def save_failures(folder: Path, log: EvaluationLog, run: Run, most: int) -> tuple[list[Path], int]:
+def save_failures(folder: Path, log: EvaluationLog, run: Run, most: int, run_folder: Path) -> tuple[list[Path], int]:
     """Pictures of the first pairs that are placed wrongly, at most so many, and how many there are."""
     if not run["pairs"]:
         return [], 0
     wrong = [k for k, right in enumerate(run["pairs"]["right"]) if not right]
-    paths = [save_failure(folder, _outcome(log, run, k), log.content) for k in wrong[:most]]
+    report = run_folder / "report.json"
+    positions = json.loads(report.read_text(encoding="utf-8"))["positions"] if report.exists() else []
+    paths = []
+    for k in wrong[:most]:
+        outcome = _outcome(log, run, k)
+        said = _what_it_said(positions[k + 1]) if k + 1 < len(positions) else ""
+        paths.append(save_failure(folder, outcome, log.content, f"{run['method']}: {outcome.status}{said}"))
     return paths, len(wrong)
+
+
+def _what_it_said(position: dict[str, Any]) -> str:
+    """How sure shapemap's report is of a position's alignment."""
+    alignment = position.get("alignment") or {}
+    probability = alignment.get("probability")
+    sure = "" if probability is None else f", probability {probability:.2f}"
+    return f"; called {alignment['status']}{sure}" if "status" in alignment else ""
 
 
 def _outcome(log: EvaluationLog, run: Run, reference: int) -> PairOutcome:

@@ -132,7 +132,8 @@ def failure_sections(log: EvaluationLog, run: dict[str, Any], most: int, folder:
     """None, or one with at most so many pictures."""
     sections = []
     if run["status"] == "ok" and most > 0:
-        paths, num_wrong = pictures.save_failures(folder / f"{log.name}_{run['method']}", log, run, most)
+        name, run_folder = f"{log.name}_{run['method']}", folder.parent / "runs" / log.name / run["method"]
+        paths, num_wrong = pictures.save_failures(folder / name, log, run, most, run_folder)
         if paths:
             text = (
                 f"{num_wrong} of {len(run['pairs']['right'])} pairs are wrong; the first {len(paths)} of them. Grey: "

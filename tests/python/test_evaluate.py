@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 import evaluate
+from evaluation import pictures
 from evaluation.results import load_results
 from evaluation_support import BASELINES, carmen_text, mapper, program
 
@@ -97,6 +98,13 @@ def test_most_failures_limits_the_pictures_and_says_so(folder: Path) -> None:
     run(folder, "--only", "line", "--methods", "mrpt-icp", "--most-failures", "2")
     assert "5 of 5 pairs are wrong; the first 2 of them." in report(folder)
     assert len(list((folder / "out/pictures/line_mrpt-icp").iterdir())) == 2
+
+
+def test_pictures_say_how_sure_the_program_was() -> None:
+    alignment = {"status": "ambiguous", "probability": 0.714}
+    assert pictures._what_it_said({"alignment": alignment}) == "; called ambiguous, probability 0.71"
+    assert pictures._what_it_said({"alignment": {"status": "ok", "probability": None}}) == "; called ok"
+    assert pictures._what_it_said({"alignment": None}) == ""
 
 
 def test_a_snapshot_has_tables_chosen_pictures_and_the_command(folder: Path) -> None:
