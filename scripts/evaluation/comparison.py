@@ -239,8 +239,8 @@ HEAD = (
 EXPLANATION = (
     "A and B are on the same logs, seeds and pairs. The interval is a percentile bootstrap of the paired difference "
     "(4000 resamples, fixed seed): logs are resampled where a data set has several, else the pairs or relations of the "
-    "one log. p is that of the exact two-sided sign test, which for right pairs is McNemar's; where fewer than "
-    "five pairs decide, or there are fewer than ten logs, trust it more than the interval. No correction is made for the number of rows. Errors of pairs are "
-    "over those that both get right; relations over those that both placed. A failed run gets no pair right, and is "
-    "left out of the scores that need a map."
+    "one log. p is that of the exact two-sided sign test, which for right pairs is McNemar's; where fewer than five "
+    "pairs decide, or there are fewer than ten logs, trust it more than the interval. No correction is made for the "
+    "number of rows. Errors of pairs are over those that both get right; relations over those that both placed. A "
+    "failed run gets no pair right, and is left out of the scores that need a map."
 )
