@@ -4,6 +4,7 @@ what is done."""
 
 from __future__ import annotations
 
+import json
 import multiprocessing
 import signal
 import sys
@@ -108,8 +109,6 @@ class Schedule:
 
 def read(job: Job) -> dict[str, Any] | None:
     """What the job wrote."""
-    import json
-
     if not job.result_path.exists():
         return None
     result: dict[str, Any] = json.loads(job.result_path.read_text(encoding="utf-8"))
