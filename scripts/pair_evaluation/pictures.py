@@ -19,8 +19,9 @@ from .tables import ReliabilityBin
 MARGIN_M = 0.5
 
 
-def save_failure(folder: Path, pair: PairOutcome, log: ReferenceLog) -> Path:
-    """Reference scan grey; query blue at its true pose, red at the pose that was found."""
+def save_failure(folder: Path, pair: PairOutcome, log: ReferenceLog, verdict: str | None = None) -> Path:
+    """Reference scan grey; query blue at its true pose, red at the pose that was found. `verdict` is for the title,
+    where it is not that of the outcome."""
     reference, query = log.points[pair.reference], log.points[pair.query]
     at_truth = transform(np.array(pair.true_pose), query)
     figure = Figure(figsize=(13, 7), layout="constrained")
@@ -32,7 +33,7 @@ def save_failure(folder: Path, pair: PairOutcome, log: ReferenceLog) -> Path:
         found = transform(np.array(pair.found_pose), query)
         title = f"found: {pair.error_m:.2f} m, {pair.error_deg:.1f} deg off{scores(pair.found_score)}"
         draw(right, reference, found, "#d02020", title)
-    figure.suptitle(title_of(pair), fontsize=10)
+    figure.suptitle(title_of(pair, verdict), fontsize=10)
     path = folder / f"{pair.log.split('.')[0]}_gap{pair.gap}_{pair.reference:05d}.png"
     folder.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=70)
@@ -44,12 +45,14 @@ def scores(score: float | None, refined: float | None = None) -> str:
     return text + ("" if refined is None else f", {refined:.1f} refined")
 
 
-def title_of(pair: PairOutcome) -> str:
+def title_of(pair: PairOutcome, verdict: str | None) -> str:
     head = (
         f"{pair.log}: {pair.reference} and {pair.query}, overlap {pair.overlap:.2f}, turn {pair.rotation_deg:.0f} deg"
     )
-    verdict = f"{pair.failure}; {pair.status}, probability {pair.probability:.2f}"
-    return f"{head}\n{verdict}{', reference in doubt' if pair.in_doubt else ''}"
+    if verdict is None:
+        verdict = f"{pair.failure}; {pair.status}, probability {pair.probability:.2f}"
+        verdict += ", reference in doubt" if pair.in_doubt else ""
+    return f"{head}\n{verdict}"
 
 
 def draw(axes: Axes, reference: Array, query: Array, colour: str, title: str) -> None:

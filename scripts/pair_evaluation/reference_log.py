@@ -41,23 +41,27 @@ class ReferenceLog:
         return [(i, i + gap) for i in range(len(self)) for gap in gaps if i + gap < len(self)]
 
 
-def read_reference_log(path: Path) -> ReferenceLog:
-    """Raises ValueError for a log without reference poses, OSError for a file that cannot be read."""
+def read_reference_log(path: Path, needs_poses: bool = True) -> ReferenceLog:
+    """Raises ValueError for a log without reference poses, OSError for a file that cannot be read. A log that does not
+    need poses and has none gets NaN."""
     opener = gzip.open if path.suffix == ".gz" else open
     with opener(path, "rt", encoding="utf-8", errors="replace") as file:
         text = file.read()
-    return _nist(path, text) if text.startswith("shapemap-scans") else _carmen(path.name, text)
+    return _nist(path, text, needs_poses) if text.startswith("shapemap-scans") else _carmen(path.name, text)
 
 
-def _nist(path: Path, text: str) -> ReferenceLog:
+def _nist(path: Path, text: str, needs_poses: bool) -> ReferenceLog:
     log = read_scan_log(path)
-    if log.map_from_robot is None:
-        raise ValueError(f"{path.name}: not every position has a reference pose")
+    poses = log.map_from_robot
+    if poses is None:
+        if needs_poses:
+            raise ValueError(f"{path.name}: not every position has a reference pose")
+        poses = np.full((len(log.timestamps_s), 3), np.nan)
     points = []
     for headings_rad, ranges in zip(log.nominal_headings_rad, log.ranges):
         parts = [points_of(sweep, log.beam_angles_rad + turn) for turn, sweep in zip(headings_rad, ranges)]
         points.append(np.concatenate(parts))
-    return ReferenceLog(path.name, ".nist", strip_nist(text), log.map_from_robot, points)
+    return ReferenceLog(path.name, ".nist", strip_nist(text), poses, points)
 
 
 def strip_nist(text: str) -> str:
@@ -70,12 +74,15 @@ def strip_nist(text: str) -> str:
 
 def _carmen(name: str, text: str) -> ReferenceLog:
     poses, scans = [], []
-    for words in map(str.split, text.splitlines()):
+    for line_number, words in enumerate(map(str.split, text.splitlines()), 1):
         if words[:1] != ["FLASER"]:
             continue
-        count = int(words[1])
-        scans.append(np.array([float(word) for word in words[2 : 2 + count]]))
-        poses.append([float(word) for word in words[2 + count : 5 + count]])
+        try:
+            scan, pose = _flaser(words)
+        except (ValueError, IndexError) as error:
+            raise ValueError(f"{name}:{line_number}: {error}") from None
+        scans.append(scan)
+        poses.append(pose)
     if not poses:
         raise ValueError(f"{name}: no FLASER line")
     maximum_m = no_return_m(scans)
@@ -83,6 +90,15 @@ def _carmen(name: str, text: str) -> ReferenceLog:
         points_of(np.where((scan > 0) & (scan < maximum_m), scan, np.nan), beam_angles_rad(len(scan))) for scan in scans
     ]
     return ReferenceLog(name, ".log", strip_carmen(text), np.array(poses), points)
+
+
+def _flaser(words: list[str]) -> tuple[Array, list[float]]:
+    """Readings and pose."""
+    count = int(words[1])
+    pose = [float(word) for word in words[2 + count : 5 + count]]
+    if len(pose) < 3 or not np.isfinite(pose).all():
+        raise ValueError(f"expected {count} readings and a pose of three numbers")
+    return np.array([float(word) for word in words[2 : 2 + count]]), pose
 
 
 def strip_carmen(text: str) -> str:

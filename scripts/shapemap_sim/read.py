@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -32,37 +32,61 @@ def _reading(text: str, max_range_m: float) -> float:
     return value if 0.0 < value < max_range_m else float("nan")
 
 
+@dataclass
+class _Draft:
+    """What the statements so far say."""
+
+    sensor: dict[str, float] = field(default_factory=dict)
+    times: list[float] = field(default_factory=list)
+    references: list[list[float]] = field(default_factory=list)
+    headings: list[list[float]] = field(default_factory=list)
+    ranges: list[list[list[float]]] = field(default_factory=list)
+
+    def add(self, fields: list[str]) -> None:
+        """One statement. Raises ValueError, IndexError or KeyError."""
+        if fields[0] == "units" and fields[1:] != ["m", "deg"]:
+            raise ValueError(f"expected units m deg, found {' '.join(fields[1:])}")
+        if fields[0] == "sensor":
+            self.sensor = _options_of(fields[2:])
+        elif fields[0] == "position":
+            self.times.append(float(fields[1]))
+            self.headings.append([])
+            self.ranges.append([])
+            if len(fields) > 2:
+                self.references.append(_reference(fields[2:]))
+        elif fields[0] == "scan":
+            self.headings[-1].append(float(np.deg2rad(float(fields[3]))))
+            self.ranges[-1].append([_reading(text, self.sensor["max_range"]) for text in fields[5:]])
+
+
+def _reference(fields: list[str]) -> list[float]:
+    if len(fields) != 4 or fields[0] != "reference":
+        raise ValueError(f"expected reference x y heading, found {' '.join(fields)}")
+    pose = [float(fields[1]), float(fields[2]), float(np.deg2rad(float(fields[3])))]
+    if not np.isfinite(pose).all():
+        raise ValueError(f"reference pose {' '.join(fields[1:])} is not finite")
+    return pose
+
+
 def read_scan_log(path: Path) -> ScanLog:
     """Raises ValueError for anything but a version 1 log in metres and degrees with equally built positions."""
     lines = [line.split("#")[0].split() for line in path.read_text(encoding="utf-8").splitlines()]
-    lines = [fields for fields in lines if fields]
-    if not lines or lines[0] != ["shapemap-scans", "1"]:
+    statements = [(number, fields) for number, fields in enumerate(lines, 1) if fields]
+    if not statements or statements[0][1] != ["shapemap-scans", "1"]:
         raise ValueError(f"{path}: not a shapemap scan log, version 1")
-    sensor: dict[str, float] = {}
-    times: list[float] = []
-    references: list[list[float]] = []
-    headings: list[list[float]] = []
-    ranges: list[list[list[float]]] = []
-    for fields in lines[1:]:
-        if fields[0] == "units" and fields[1:] != ["m", "deg"]:
-            raise ValueError(f"{path}: expected units m deg, found {' '.join(fields[1:])}")
-        if fields[0] == "sensor":
-            sensor = _options_of(fields[2:])
-        elif fields[0] == "position":
-            times.append(float(fields[1]))
-            headings.append([])
-            ranges.append([])
-            if len(fields) == 6 and fields[2] == "reference":
-                references.append([float(fields[3]), float(fields[4]), float(np.deg2rad(float(fields[5])))])
-        elif fields[0] == "scan":
-            headings[-1].append(float(np.deg2rad(float(fields[3]))))
-            ranges[-1].append([_reading(text, sensor["max_range"]) for text in fields[5:]])
+    draft = _Draft()
+    for number, fields in statements[1:]:
+        try:
+            draft.add(fields)
+        except (ValueError, IndexError, KeyError) as error:
+            raise ValueError(f"{path}:{number}: {error}") from None
+    sensor = draft.sensor
     angles = np.deg2rad(sensor["first_angle"] + sensor["angle_step"] * np.arange(int(sensor["beams"])))
     return ScanLog(
-        np.array(times),
-        np.array(references) if len(references) == len(times) else None,
-        np.array(headings),
+        np.array(draft.times),
+        np.array(draft.references) if len(draft.references) == len(draft.times) else None,
+        np.array(draft.headings),
         angles,
         sensor["max_range"],
-        np.array(ranges),
+        np.array(draft.ranges),
     )

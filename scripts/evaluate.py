@@ -1,0 +1,171 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Evaluate whole maps: run methods on all data sets at hand, judge them against the references, write a report.
+
+Every program gets logs without any pose or odometry. Results are written to --out: report.html (one file, opens
+without a network), report.md, results.json (for scripts/compare.py), and a folder for each run.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shlex
+import signal
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from tqdm import tqdm
+
+from evaluate_arena import parse_seeds
+from evaluation.datasets import PROJECT, DatasetError, LogSpec, read_datasets, select
+from evaluation.logs import EvaluationLog, load
+from evaluation.methods import ALL, CEILING, Programs, with_feeds
+from evaluation.results import assemble, save
+from evaluation.runs import Job
+from evaluation.schedule import Schedule
+from simulate_arena import number
+
+BIN = PROJECT / "build/release/bin"
+QUICK_LOGS, QUICK_TIMEOUT_S = ["demo"], 15.0
+EXAMPLE = f"""methods: {", ".join(ALL)};
+  BASELINE+robust and BASELINE+paper get our estimated poses as odometry; see docs/evaluation.md
+
+example:
+  scripts/evaluate.py --quick
+  SHAPEMAP_DATASETS=logs scripts/evaluate.py --jobs 2 --timeout-s 1800
+  scripts/evaluate.py --only demo,orebro --methods robust,paper,ceiling --out results/short --resume
+
+Exit status: 0 all runs gave a result, 1 some failed or a log asked for by --only is missing, 2 wrong usage,
+3 malformed data sets, logs or references (nothing was run), 130 interrupted (what was done is reported)."""
+
+
+def name_list(text: str) -> list[str]:
+    return [name for name in text.split(",") if name]
+
+
+def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        description=__doc__, epilog=EXAMPLE, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    add = parser.add_argument
+    add("--datasets", type=Path, default=PROJECT / "datasets/datasets.toml", metavar="FILE", help="what there is")
+    add("--only", type=name_list, default=[], metavar="LIST", help="only these data sets or logs")
+    add("--seeds", type=parse_seeds, metavar="LIST", help="of the arenas, instead of those in the file, such as 0-4")
+    add("--methods", type=name_list, default=list(ALL), metavar="LIST", help="only these (default all, see below)")
+    add("--quick", action="store_true", help="the demo log only, at most 15 s for a run: under two minutes")
+    add("--out", type=Path, default=PROJECT / "results/evaluation", metavar="DIR", help="(default results/evaluation)")
+    add("--jobs", type=number(1, 256, int), default=os.cpu_count() or 1, metavar="N", help="runs at the same time")
+    add("--timeout-s", type=number(0.1, 10**6), default=1800.0, metavar="S", help="for one run (default %(default)g)")
+    add("--resume", action="store_true", help="keep the runs in --out that are done, if nothing about them changed")
+    add("--cli", type=Path, default=BIN / "shapemap-cli", metavar="FILE", help="the mapper")
+    add("--baselines", type=Path, default=BIN / "shapemap-baselines", metavar="FILE", help="the baselines")
+    add("--arg", action="append", default=[], metavar="ARG", help="passed on to the mapper; repeat for more")
+    add("--baseline-arg", action="append", default=[], metavar="ARG", help="passed on to the baselines")
+    add("--seed", type=number(0, 2**31 - 1, int), default=0, metavar="N", help="of the particle filter (default 0)")
+    add(
+        "--most-failures",
+        type=number(0, 1000, int),
+        default=6,
+        metavar="N",
+        help="pictures of failed pairs per method and data set",
+    )
+    add("--snapshot", type=Path, metavar="FILE.md", help="also write the tables there, with the command")
+    add("--snapshot-logs", type=name_list, default=[], metavar="LIST", help="logs whose pictures go with it")
+    arguments = parser.parse_args(argv)
+    try:
+        arguments.chosen = with_feeds(arguments.methods)
+    except ValueError as error:
+        parser.error(f"--methods: {error}")
+    if arguments.quick:
+        arguments.only = arguments.only or QUICK_LOGS
+        arguments.timeout_s = min(arguments.timeout_s, QUICK_TIMEOUT_S)
+    return arguments
+
+
+def complain(text: str) -> None:
+    tqdm.write(f"evaluate.py: {text}", file=sys.stderr)  # beside a progress bar, if there is one
+
+
+def logs_at_hand(arguments: argparse.Namespace) -> tuple[list[EvaluationLog], list[dict[str, str]]]:
+    """Those that are there, and those that are not, each named. Raises DatasetError or OSError."""
+    folder = os.environ.get("SHAPEMAP_DATASETS")
+    specs: list[LogSpec] = select(
+        read_datasets(arguments.datasets, Path(folder) if folder else None, arguments.seeds), arguments.only
+    )
+    logs, skipped = [], []
+    for spec in tqdm(specs, desc="reading", disable=None, leave=False):
+        if spec.missing:
+            why = ", ".join(str(path) for path in spec.missing)
+            skipped.append({"name": spec.name, "missing": ", ".join(path.name for path in spec.missing)})
+            complain(f"SKIPPED {spec.name}, missing: {why}")
+        else:
+            logs.append(load(spec, arguments.out / "logs", arguments.cli))
+    for log in logs:
+        if log.reference is None and not log.relations:
+            complain(f"{log.name} has no reference: maps and timing only")
+    return logs, skipped
+
+
+def jobs_for(logs: Sequence[EvaluationLog], arguments: argparse.Namespace) -> list[Job]:
+    programs = programs_of(arguments)
+    return [
+        Job(log, method, programs, arguments.timeout_s, arguments.out)
+        for log in logs
+        for method in arguments.chosen
+        if method.name != CEILING or log.reference is not None or log.relations
+    ]
+
+
+def programs_of(arguments: argparse.Namespace) -> Programs:
+    paths = arguments.cli.resolve(), arguments.baselines.resolve()
+    return Programs(*paths, tuple(arguments.arg), tuple(arguments.baseline_arg), arguments.seed)
+
+
+def options_of(arguments: argparse.Namespace) -> dict[str, Any]:
+    options = {key: value for key, value in vars(arguments).items() if key != "chosen"}
+    return {key: str(value) if isinstance(value, Path) else value for key, value in options.items()}
+
+
+def main(argv: list[str] | None = None) -> int:
+    arguments = parse_arguments(argv)
+    started = time.monotonic()
+    try:
+        logs, skipped = logs_at_hand(arguments)
+    except (DatasetError, OSError) as error:
+        complain(str(error))
+        return 3
+    if not logs:
+        complain("no data set at hand")
+        return 1
+    faults: list[str] = []
+    jobs = jobs_for(logs, arguments)
+    runs, complete = Schedule(jobs, arguments.jobs, arguments.resume, faults.append).run()
+    about = {
+        "command": shlex.join(["scripts/evaluate.py", *(sys.argv[1:] if argv is None else argv)]),
+        "options": options_of(arguments),
+        "wall_s": time.monotonic() - started,
+        "complete": complete,
+    }
+    results = assemble(logs, skipped, arguments.chosen, programs_of(arguments), runs, about)
+    save(results, arguments.out / "results.json")
+    from evaluation.report import write_report  # matplotlib and all that only when there is something to draw
+
+    write_report(results, {log.name: log for log in logs}, arguments)
+    print(f"{len(runs)} of {len(jobs)} runs, {len(faults)} failed; report: {arguments.out / 'report.html'}")
+    if not complete:
+        complain(f"interrupted; {len(runs)} of {len(jobs)} runs are done, --resume does the rest")
+        return 130
+    return 1 if faults or (skipped and arguments.only) else 0
+
+
+if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends as Ctrl-C does
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:  # before the first run, or in the middle of the report
+        complain("interrupted; --resume keeps the runs that are done")
+        sys.exit(130)

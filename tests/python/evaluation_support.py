@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Made-up logs, data sets and programs for the tests of scripts/evaluation/."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from evaluation.datasets import LogSpec
+from evaluation.logs import EvaluationLog, load
+from evaluation.methods import Programs, parse_method
+from evaluation.runs import Job
+
+NUM_SCANS = 6
+ODOMETRY = "7.125"  # stands in every odometry field
+
+# Places position k at (k, 0), but the last one a metre too far. Knows --help, mapping and `align`.
+MAPPER = f"""import json, sys
+words = sys.argv[1:]
+if '--help' in words:
+    print('  --motions FILE  the motions' if MOTIONS else '  --out FILE')
+    sys.exit()
+log = open(words[1] if words[0] == 'align' else words[0]).read()
+if '{ODOMETRY}' in log or ' reference ' in log:
+    sys.exit('got odometry or poses')
+num = sum(line.startswith(('FLASER', 'position')) for line in log.splitlines())
+if words[0] == 'align':
+    answers = []
+    for line in open(words[words.index('--pairs') + 1]):
+        i, j, *pose = line.split()
+        refined = dict(pose=[float(p) for p in pose], score=1)
+        answers.append(dict(reference=int(i), query=int(j), status='ok', reason='', probability=1, hypotheses=[],
+                            given=refined, refined=refined))
+    open(words[words.index('--out') + 1], 'w').writelines(json.dumps(a) + chr(10) for a in answers)
+    sys.exit()
+with open(words[words.index('--trajectory') + 1], 'w') as out:
+    for k in range(num):
+        out.write(f'{{k + 1}}.0 {{k + (k == num - 1)}} 0 0 0 0 0 1' + chr(10))
+if '--motions' in words:
+    open(words[words.index('--motions') + 1], 'w').write('motions')
+"""
+
+# Gives back the poses it is fed with, or stands still; vasco fails.
+BASELINES = """import sys
+words = sys.argv[1:]
+def option(name):
+    return words[words.index(name) + 1] if name in words else None
+if words[0] == 'vasco':
+    sys.exit('out of luck')
+if option('--covariances') and open(option('--covariances')).read() != 'motions':
+    sys.exit('no motions')
+num = sum(line.startswith(('FLASER', 'position')) for line in open(words[1]))
+still = ''.join(f'{k + 1}.0 0 0 0 0 0 0 1' + chr(10) for k in range(num))
+open(option('--trajectory'), 'w').write(open(option('--poses')).read() if option('--poses') else still)
+"""
+
+
+def program(path: Path, body: str) -> Path:
+    path.write_text(f"#!{sys.executable}\n{body}\n", encoding="utf-8")
+    path.chmod(0o755)
+    return path
+
+
+def mapper(folder: Path, motions: bool = True) -> Path:
+    return program(folder / "mapper", f"MOTIONS = {motions}\n{MAPPER}")
+
+
+def carmen_text(num_scans: int = NUM_SCANS) -> str:
+    """Scans of a wall, 1 m apart along x, with times 10.5, 11.5, ... s."""
+    lines = []
+    for k in range(num_scans):
+        ranges = " ".join(f"{2 + 0.01 * (beam + k):.2f}" for beam in range(180))
+        pose = f"{k}.0 0.0 0.0 {ODOMETRY} {ODOMETRY} {ODOMETRY}"
+        lines += [f"ODOM {k}.0 {ODOMETRY} 0 0 0 0 {k} robot {k}", f"FLASER 180 {ranges} {pose} {k + 10}.5 robot {k}.5"]
+    return "\n".join(lines) + "\n"
+
+
+def line_log(folder: Path, reference: str = "slam", **fields: object) -> EvaluationLog:
+    path = folder / "line.log"
+    path.write_text(carmen_text(), encoding="utf-8")
+    spec = LogSpec("line", "line", "SICK", reference, path=path, **fields)  # type: ignore[arg-type]
+    return load(spec, folder / "logs", Path("/no/cli"))
+
+
+def job(folder: Path, method: str, log: EvaluationLog, programs: Programs, timeout_s: float = 20.0) -> Job:
+    return Job(log, parse_method(method), programs, timeout_s, folder / "out")
+
+
+def straight(num: int, step_m: float = 1.0) -> np.ndarray:
+    return np.array([[k * step_m, 0.0, 0.0] for k in range(num)])
