@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 namespace shapemap {
@@ -60,12 +59,6 @@ class RelativePoseError : public ceres::SizedCostFunction<3, 3, 3> {
   Eigen::Matrix3d root_;
 };
 
-void check(std::size_t num_nodes, const PoseConstraint& constraint) {
-  if (constraint.a >= num_nodes || constraint.b >= num_nodes || constraint.a == constraint.b) {
-    throw std::invalid_argument("a constraint joins nodes that do not exist, or one with itself");
-  }
-}
-
 ceres::Solver::Options solver_options(int max_iterations) {
   ceres::Solver::Options options;
   // One thread and Eigen's solver: no other makes the same bits on every run.
@@ -79,23 +72,6 @@ ceres::Solver::Options solver_options(int max_iterations) {
 }
 
 }  // namespace
-
-std::vector<std::size_t> connected_parts(std::size_t num_nodes, const std::vector<PoseConstraint>& constraints) {
-  std::vector<std::size_t> part(num_nodes);
-  std::iota(part.begin(), part.end(), std::size_t{0});
-  const auto root = [&](std::size_t node) {
-    while (part[node] != node) node = part[node] = part[part[node]];
-    return node;
-  };
-  for (const PoseConstraint& constraint : constraints) {
-    check(num_nodes, constraint);
-    const std::size_t a = root(constraint.a);
-    const std::size_t b = root(constraint.b);
-    part[std::max(a, b)] = std::min(a, b);
-  }
-  for (std::size_t node = 0; node < num_nodes; ++node) part[node] = root(node);
-  return part;
-}
 
 PoseGraphSolution solve_pose_graph(const std::vector<Pose2>& map_from_node,
                                    const std::vector<PoseConstraint>& constraints, int max_iterations) {

@@ -7,17 +7,16 @@
 #include "shapemap/map/trajectory.hpp"
 #include "shapemap/scan/scan.hpp"
 
-/// The two ways to chain the scans of a log. Each fills in positions, fragments and times, and throws Interrupted when
-/// the observer asks to stop; what is in `result` then is whole. `sink` may be null.
+/// The two ways to map a log. Each fills in positions, fragments and times, and throws Interrupted when the observer asks
+/// to stop; what is in `result` then is whole. `sink` may be null.
 namespace shapemap {
 
 /// The paper's: each scan against the partial map of the few before it.
 void chain_by_paper(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
                     MapResult& result);
 
-/// The robust one: each scan against the one before it, with several hypotheses, of which the scans further back
-/// decide.
-void chain_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
-                    MapResult& result);
+/// The robust one: a chain of keyframes, in which places are known again.
+void map_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
+                  MapResult& result);
 
 }  // namespace shapemap

@@ -33,9 +33,9 @@ std::string MapResult::why_not_in_map(const PositionResult& position) const {
 MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink) {
   validate_all(options);
   MapResult result;
-  const auto chain = options.chain.method == Method::kPaper ? chain_by_paper : chain_robustly;
+  const auto map = options.chain.method == Method::kPaper ? chain_by_paper : map_robustly;
   try {
-    chain(log, options, observer, sink, result);
+    map(log, options, observer, sink, result);
   } catch (const Interrupted&) {
     result.interrupted = true;
   }

@@ -18,6 +18,17 @@ struct RefinementOptions {
   double least_agree = 0.25;
   double most_off_m = 0.60;
   double most_off_rad = 6 * kDegree;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"map-rounds", "rounds of aligning all neighbours and solving for all poses", 0, 100}, self.rounds);
+    visit(Field{"map-within-m", "keyframes nearer than this are neighbours [m]", 0.1, 100}, self.within_m);
+    visit(Field{"map-neighbours", "neighbours that each keyframe is aligned to, at most", 0, 1000}, self.neighbours);
+    visit(Field{"map-least-agree", "share of the points of neighbours that must agree", 0, 1}, self.least_agree);
+    visit(Field{"map-most-off-m", "an alignment farther than this from the map does not count [m]", 0.01, 10},
+          self.most_off_m);
+    visit(Field{"map-most-off-deg", "nor one that is turned more [deg]", 0.1, 180, kDegree}, self.most_off_rad);
+  }
 };
 
 /// Aligns all scans that see the same from where the map has them, beside `chain`, and solves for all of it; several

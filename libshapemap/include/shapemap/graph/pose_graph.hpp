@@ -37,4 +37,7 @@ double squared_error(const PoseConstraint& constraint, const std::vector<Pose2>&
 /// For each node the lowest number among the nodes that it hangs together with.
 std::vector<std::size_t> connected_parts(std::size_t num_nodes, const std::vector<PoseConstraint>& constraints);
 
+/// Per constraint: whether nothing else joins its two nodes, neither directly nor by a detour.
+std::vector<bool> lone_constraints(std::size_t num_nodes, const std::vector<PoseConstraint>& constraints);
+
 }  // namespace shapemap

@@ -4,6 +4,9 @@
 #include "shapemap/align/align.hpp"
 #include "shapemap/align/robust_align.hpp"
 #include "shapemap/core/options.hpp"
+#include "shapemap/graph/loop_closing.hpp"
+#include "shapemap/graph/loop_hypotheses.hpp"
+#include "shapemap/graph/map_refinement.hpp"
 #include "shapemap/scan/returns.hpp"
 #include "shapemap/shape/polyline_em.hpp"
 #include "shapemap/shape/shape.hpp"
@@ -18,6 +21,30 @@ enum class Method {
 template <>
 struct EnumNames<Method> {
   static constexpr std::array<std::string_view, 2> names{"robust", "paper"};
+};
+
+/// Which scans others are aligned to.
+struct KeyframeOptions {
+  double step_m = 0.50;
+  double turn_rad = 20 * kDegree;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"keyframe-step-m", "a scan nearer than this to a keyframe needs none of its own [m]; 0: each has its own",
+                0, 10},
+          self.step_m);
+    visit(Field{"keyframe-turn-deg", "unless it is turned by more [deg]", 0, 180, kDegree}, self.turn_rad);
+  }
+};
+
+/// Whether places are known again.
+struct LoopSwitch {
+  bool close_loops = true;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"close-loops", "know places again; without it, errors add up along the way"}, self.close_loops);
+  }
 };
 
 /// How the robust method chains its alignments.
@@ -59,7 +86,12 @@ struct MappingOptions {
   PolylineOptions polylines;
   ShapeOptions shape;
   RobustOptions robust;
+  KeyframeOptions keyframes;
   SmoothingOptions smoothing;
+  LoopSwitch loops;
+  LoopSearchOptions loop_search;
+  LoopClosingOptions loop_closing;
+  RefinementOptions refinement;
   AlignOptions align;  ///< of the paper's method
   ChainOptions chain;
 
@@ -75,7 +107,12 @@ struct MappingOptions {
     visit("Robust method: visibility", self.robust.search.visibility);
     visit("Robust method: refinement", self.robust.search.line);
     visit("Robust method: confidence", self.robust.confidence);
+    visit("Robust method: keyframes", self.keyframes);
     visit("Robust method: chain", self.smoothing);
+    visit("Robust method: loops", self.loops);
+    visit("Robust method: places that look alike", self.loop_search);
+    visit("Robust method: closing loops", self.loop_closing);
+    visit("Robust method: the whole map", self.refinement);
     visit("Paper's method: histograms", self.align.histogram);
     visit("Paper's method: similarity", self.align.similarity);
     visit("Paper's method: rotations", self.align.rotation);

@@ -32,7 +32,18 @@ struct PositionResult {
   int fragment = -1;  ///< index into MapResult::fragments; -1: no usable shape, in no fragment
   bool starts_fragment = false;
   Alignment alignment;  ///< against the scans before it; meaningless for the first position
-  std::string reason;   ///< empty when aligned without doubt; else one line that says why not
+  /// Loops hold this position where it is, even if that alignment was wrong.
+  bool held_by_loops = false;
+  bool is_keyframe = true;
+  std::string reason;  ///< empty when aligned without doubt; else one line that says why not
+};
+
+/// Two places that are known to be near each other though the log came to them at different times.
+struct ClosedLoop {
+  std::size_t a = 0;  ///< index of a position; the earlier one
+  std::size_t b = 0;
+  Pose2 a_from_b;         ///< of the best of the alignments behind it
+  double strength = 0.0;  ///< log odds of these, summed
 };
 
 /// Seconds spent per stage, summed over threads where a stage is threaded.
@@ -41,11 +52,13 @@ struct StageTimes {
   double align_s = 0.0;
   double icp_s = 0.0;
   double decoupled_icp_s = 0.0;
+  double loops_s = 0.0;  ///< to know places again, and to solve for the map
 };
 
 struct MapResult {
   std::vector<Fragment> fragments;        ///< in the order of the log
   std::vector<PositionResult> positions;  ///< one per position of the log that was looked at
+  std::vector<ClosedLoop> loops;          ///< strongest first
   int largest_fragment = -1;              ///< the fragment that makes the map; -1: none
   StageTimes times;
   bool interrupted = false;  ///< the observer asked to stop; the rest of the log was not looked at

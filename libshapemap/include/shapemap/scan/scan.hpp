@@ -47,6 +47,8 @@ struct Position {
 struct Log {
   std::string format;  ///< "rawlog", "carmen", "nist" or "bare"
   std::vector<Position> positions;
+  /// Of several logs in one: positions, in order, at which one starts that was recorded by itself; without the first.
+  std::vector<std::size_t> starts;
   std::vector<std::string> warnings;  ///< what was odd but could be read, one line each
 };
 

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "shapemap/align/pose_hypothesis.hpp"
+#include "shapemap/core/observer.hpp"
+#include "shapemap/core/options.hpp"
+#include "shapemap/graph/loop_clusters.hpp"
+
+/// Where places may have been seen before.
+namespace shapemap {
+
+struct LoopSearchOptions {
+  int likely_places = 10;
+  int shortest_loop = 10;
+  double least_probability = 0.02;
+  double bridge_below = 0.5;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"loop-likely-places", "earlier places that look most alike and are tried, for each", 0, 10000},
+          self.likely_places);
+    visit(Field{"loop-shortest", "a loop joins keyframes that are at least so many apart", 2, 10000},
+          self.shortest_loop);
+    visit(Field{"loop-least-probability", "a less probable alignment is not considered for a loop", 0, 1},
+          self.least_probability);
+    visit(Field{"loop-bridge-below", "about a less probable alignment of the chain, all scans are aligned to each other",
+                0, 1},
+          self.bridge_below);
+  }
+};
+
+using NodeViews = std::vector<std::shared_ptr<const ScanView>>;
+
+/// Each node, aligned to the earlier ones that look most alike. Throws Interrupted when the observer asks to stop.
+std::vector<LoopHypothesis> likely_loops(const NodeViews& views, const HypothesisSearchOptions& search,
+                                         const LoopSearchOptions& options, int threads, RunObserver& observer);
+
+/// The few nodes before and after each of `links` (node i to node i + 1), all aligned to each other.
+std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<std::size_t>& links,
+                                    const HypothesisSearchOptions& search, int threads, RunObserver& observer);
+
+}  // namespace shapemap

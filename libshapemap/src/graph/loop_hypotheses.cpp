@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/graph/loop_hypotheses.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "shapemap/align/confidence.hpp"
+#include "shapemap/core/errors.hpp"
+#include "shapemap/core/parallel_for.hpp"
+#include "shapemap/graph/place_signature.hpp"
+
+namespace shapemap {
+namespace {
+
+/// Of each pair of scans, so many poses.
+constexpr std::size_t kPosesPerPair = 3;
+
+/// Nodes on either side of a bridge.
+constexpr std::size_t kBridgeNodes = 4;
+
+/// Pairs that are worked on together, and between which the observer is asked. Part of no result.
+constexpr std::size_t kBlock = 64;
+
+struct Pair {
+  std::size_t a;
+  std::size_t b;
+};
+
+/// Most of the pairs have nothing in common, and all rotations would be tried on each.
+HypothesisSearchOptions quick(HypothesisSearchOptions search) {
+  search.hypotheses.all_rotations_below = -std::numeric_limits<double>::infinity();
+  return search;
+}
+
+std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, const HypothesisSearchOptions& search,
+                                    double least_probability) {
+  const std::vector<PoseHypothesis> poses = pose_hypotheses(*views[pair.a], *views[pair.b], search);
+  std::vector<LoopHypothesis> found;
+  for (std::size_t k = 0; k < std::min(kPosesPerPair, poses.size()); ++k) {
+    const double margin = k == 0 ? lead_of_first(poses) : poses[k].score - poses[0].score;
+    const double p = std::clamp(match_probability(poses[k], margin), 1e-9, 1.0 - 1e-9);
+    if (p < least_probability) continue;
+    found.push_back(
+        {pair.a, pair.b, poses[k].ref_from_query, pose_covariance(poses[k].fit), std::log(p / (1.0 - p))});
+  }
+  return found;
+}
+
+std::vector<LoopHypothesis> all_aligned(const NodeViews& views, const std::vector<Pair>& pairs,
+                                        const HypothesisSearchOptions& search, double least_probability, int threads,
+                                        RunObserver& observer) {
+  std::vector<LoopHypothesis> all;
+  for (std::size_t first = 0; first < pairs.size(); first += kBlock) {
+    if (!observer.keep_going()) throw Interrupted();
+    const std::size_t count = std::min(kBlock, pairs.size() - first);
+    std::vector<std::vector<LoopHypothesis>> found(count);
+    parallel_for(count, threads,
+                 [&](std::size_t i) { found[i] = aligned(views, pairs[first + i], search, least_probability); });
+    for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+    observer.on_progress(first + count, pairs.size());
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<LoopHypothesis> likely_loops(const NodeViews& views, const HypothesisSearchOptions& search,
+                                         const LoopSearchOptions& options, int threads, RunObserver& observer) {
+  std::vector<PlaceSignature> signatures(views.size());
+  parallel_for(views.size(), threads, [&](std::size_t i) { signatures[i] = place_signature(*views[i]); });
+  PlaceIndex index;
+  for (const PlaceSignature& signature : signatures) index.add(signature);
+
+  const auto shortest = static_cast<std::size_t>(options.shortest_loop);
+  const auto count = static_cast<std::size_t>(options.likely_places);
+  std::vector<std::vector<LikelyPlace>> places(views.size());
+  parallel_for(views.size(), threads, [&](std::size_t b) {
+    if (b >= shortest) places[b] = index.most_alike(b, b - shortest + 1, count);
+  });
+  std::vector<Pair> pairs;
+  for (std::size_t b = 0; b < views.size(); ++b) {
+    for (const LikelyPlace& place : places[b]) pairs.push_back({place.node, b});
+  }
+  return all_aligned(views, pairs, quick(search), options.least_probability, threads, observer);
+}
+
+std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<std::size_t>& links,
+                                    const HypothesisSearchOptions& search, int threads, RunObserver& observer) {
+  std::vector<Pair> pairs;
+  for (const std::size_t link : links) {
+    for (std::size_t a = link + 1 - std::min(kBridgeNodes, link + 1); a <= link; ++a) {
+      for (std::size_t b = link + 1; b < std::min(views.size(), link + 1 + kBridgeNodes); ++b) pairs.push_back({a, b});
+    }
+  }
+  return all_aligned(views, pairs, quick(search), 0.0, threads, observer);
+}
+
+}  // namespace shapemap

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "keyframe_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shapemap/align/confidence.hpp"
+
+namespace shapemap {
+namespace {
+
+/// What is followed without a search agrees so well, from scan to scan moves so little, and is held so well.
+constexpr double kLeastAgree = 0.55;
+constexpr double kMostCrossed = 0.08;
+constexpr double kLongestStep_m = 0.20;
+constexpr double kLargestTurn_rad = 10 * kDegree;
+constexpr double kMostDeviation_m = 0.10;
+constexpr double kSure = 0.95;
+
+/// A search at each scan pays only where scans follow each other closely.
+constexpr double kDense = 0.5;
+constexpr double kMemory = 0.97;
+
+bool fits(const PoseHypothesis& pose) {
+  const double total = std::max(pose.visibility.total(), 1e-9);
+  return pose.visibility.agree > kLeastAgree * total && pose.visibility.crossed < kMostCrossed * total &&
+         worst_deviation_m(pose_covariance(pose.fit)) < kMostDeviation_m;
+}
+
+bool is_small(const Pose2& step, double metres, double radians) {
+  return step.translation().norm() < metres && std::abs(step.theta_rad) < radians;
+}
+
+}  // namespace
+
+void KeyframeTracker::start(std::shared_ptr<const ScanView> keyframe) {
+  keyframe_ = std::move(keyframe);
+  last_ = {};
+  attached_ *= kMemory;
+}
+
+std::optional<PoseHypothesis> KeyframeTracker::follow(const ScanView& view) {
+  if (!keyframe_ || options_.keyframes.step_m <= 0.0) return std::nullopt;
+  std::optional<PoseHypothesis> pose = followed(view);
+  if (!pose && attached_ > kDense) pose = searched(view);
+  if (!pose || !is_small(pose->ref_from_query, options_.keyframes.step_m, options_.keyframes.turn_rad)) {
+    step_ = {};
+    return std::nullopt;
+  }
+  step_ = inverse(last_) * pose->ref_from_query;
+  last_ = pose->ref_from_query;
+  attached_ = 1.0 - kMemory * (1.0 - attached_);
+  return pose;
+}
+
+/// From where the last scan was, and from where the motion goes on.
+std::optional<PoseHypothesis> KeyframeTracker::followed(const ScanView& view) const {
+  PoseHypothesis best = refined_hypothesis(*keyframe_, view, last_, options_.robust.search);
+  if (!(step_ == Pose2{})) {
+    PoseHypothesis onward = refined_hypothesis(*keyframe_, view, last_ * step_, options_.robust.search);
+    if (onward.score > best.score) best = std::move(onward);
+  }
+  const Pose2 step = inverse(last_) * best.ref_from_query;
+  if (!fits(best) || !is_small(step, kLongestStep_m, kLargestTurn_rad)) return std::nullopt;
+  return best;
+}
+
+std::optional<PoseHypothesis> KeyframeTracker::searched(const ScanView& view) const {
+  const std::vector<PoseHypothesis> poses = pose_hypotheses(*keyframe_, view, options_.robust.search);
+  if (poses.empty() || match_probability(poses.front(), lead_of_first(poses)) < kSure) return std::nullopt;
+  return poses.front();
+}
+
+}  // namespace shapemap

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "shapemap/align/pose_hypothesis.hpp"
+#include "shapemap/map/mapping_options.hpp"
+
+namespace shapemap {
+
+/// Follows a sensor that moves little from scan to scan, as in recordings at full rate, and says which of the scans a
+/// keyframe can stand for. Any doubt makes a keyframe: those are aligned without a guess.
+class KeyframeTracker {
+ public:
+  explicit KeyframeTracker(const MappingOptions& options) : options_(options) {}
+
+  /// From here on, scans are compared to `keyframe`.
+  void start(std::shared_ptr<const ScanView> keyframe);
+
+  /// The pose of a scan that the keyframe can stand for, in its frame.
+  std::optional<PoseHypothesis> follow(const ScanView& view);
+
+ private:
+  std::optional<PoseHypothesis> followed(const ScanView& view) const;
+  std::optional<PoseHypothesis> searched(const ScanView& view) const;
+
+  const MappingOptions& options_;
+  std::shared_ptr<const ScanView> keyframe_;
+  Pose2 last_;              ///< of the scan before, in the frame of the keyframe
+  Pose2 step_;              ///< to it from the one before
+  double attached_ = 0.0;   ///< share of the recent scans that a keyframe stood for
+};
+
+}  // namespace shapemap
