@@ -5,6 +5,7 @@
 #include "arguments.hpp"
 #include "command_line.hpp"
 #include "demo_log.hpp"
+#include "map_picture.hpp"
 #include "options_file.hpp"
 #include "shapemap/io/report.hpp"
 
@@ -78,15 +79,7 @@ void add_outputs(CLI::App& app, MapArguments& arguments) {
 
 void check_out(const MapArguments& arguments) {
   if (arguments.map_path.empty()) throw ConfigError("no map asked for; give --out map.png, .pgm or .tif");
-  const std::size_t dot = arguments.map_path.find_last_of("./");
-  const std::string ending = dot == std::string::npos ? "" : arguments.map_path.substr(dot);
-  if (dot == 0 || arguments.map_path[dot - 1] == '/') {
-    throw ConfigError("--out '" + arguments.map_path + "' has no name before its ending");
-  }
-  for (const char* known : {".png", ".pgm", ".tif", ".PNG", ".PGM", ".TIF"}) {
-    if (ending == known) return;
-  }
-  throw ConfigError("--out '" + arguments.map_path + "' must end in .png, .pgm or .tif");
+  check_map_path("--out", arguments.map_path);
 }
 
 std::string version_text() {
