@@ -18,12 +18,11 @@ ICP_algorithm = icpClassic
 maxIterations = 80
 minAbsStep_trans = 1e-6
 minAbsStep_rot = 1e-6
-thresholdDist = 0.3
 thresholdAng_DEG = 5
 ALFA = 0.8
 smallestThresholdDist = 0.05
 onlyUniqueRobust = true
-corresponding_points_decimation = 5
+corresponding_points_decimation = 1
 [Map]
 matchAgainstTheGrid = 0
 pointsMap_count = 1
@@ -47,6 +46,7 @@ class MrptIcp : public SlamMethod {
     const mrpt::config::CConfigFileMemory settings{std::string(kSettings)};
     builder_.setVerbosityLevel(mrpt::system::LVL_ERROR);
     builder_.ICP_params.loadFromConfigFile(settings, "ICP");
+    builder_.ICP_params.thresholdDist = options.reach_m;
     builder_.ICP_options.loadFromConfigFile(settings, "Map");
     builder_.ICP_options.insertionLinDistance = options.insertion_m;
     builder_.ICP_options.insertionAngDistance = options.insertion_rad;

@@ -10,12 +10,14 @@
 namespace shapemap::baselines {
 
 struct IcpOptions {
-  double insertion_m = 0.0;
-  double insertion_rad = 0.0;
+  double reach_m = 0.3;
+  double insertion_m = 1.2;
+  double insertion_rad = 45 * kDegree;
   double min_goodness = 0.40;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
+    visit(Field{"icp-reach-m", "points farther apart are no pair at first [m]", 0.05, 100}, self.reach_m);
     visit(Field{"icp-insertion-m", "scans enter the map that are so far from the latest in it [m]; 0: all", 0, 100},
           self.insertion_m);
     visit(Field{"icp-insertion-deg", "the same of the heading [deg]", 0, 180, kDegree}, self.insertion_rad);

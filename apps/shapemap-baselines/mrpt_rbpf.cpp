@@ -28,6 +28,7 @@ adaptiveSampleSize = 0
 resamplingMethod = 0
 BETA = 0.50
 powFactor = 0.01
+pfOptimalProposal_mapSelection = 0
 insertionLinDistance = -1
 insertionAngDistance_deg = -1
 localizeLinDistance = -1
@@ -103,6 +104,7 @@ class MrptRbpf : public SlamMethod {
  public:
   MrptRbpf(const RbpfOptions& options, int seed) : options_(options), filter_(settings_of(options)) {
     mrpt::random::getRandomGenerator().randomize(static_cast<std::uint32_t>(seed));
+    filter_.mapPDF.setVerbosityLevel(mrpt::system::LVL_ERROR);  // it warns on standard output
     filter_.initialize();
   }
 

@@ -68,6 +68,8 @@ void add_outputs(CLI::App& app, MapArguments& arguments) {
       "the map, .png, .pgm or .tif, with a .yaml for ROS beside it; example: --out map.png");
   add("--trajectory", arguments.trajectory_path,
       "placed positions as TUM lines, '-' for standard output; example: --trajectory map.tum");
+  add("--motions", arguments.motions_path,
+      "motions between placed positions with covariances, '-' for standard output; example: --motions map.motions");
   add("--carmen-out", arguments.carmen_path,
       "placed positions as a CARMEN log with poses; example: --carmen-out map.log");
   add("--rawlog-out", arguments.rawlog_path,
@@ -80,6 +82,9 @@ void add_outputs(CLI::App& app, MapArguments& arguments) {
 void check_out(const MapArguments& arguments) {
   if (arguments.map_path.empty()) throw ConfigError("no map asked for; give --out map.png, .pgm or .tif");
   check_map_path("--out", arguments.map_path);
+  if (!arguments.motions_path.empty() && arguments.settings.mapping.chain.method != Method::kRobust) {
+    throw ConfigError("--motions needs --method robust: the paper's method has no covariances");
+  }
 }
 
 std::string version_text() {

@@ -4,6 +4,7 @@
 #include "map_picture.hpp"
 #include "shapemap/io/grid_map.hpp"
 #include "shapemap/io/map_files.hpp"
+#include "shapemap/io/trajectory_files.hpp"
 #include "signals.hpp"
 
 namespace shapemap::cli {
@@ -37,8 +38,8 @@ void add_logs(const MapArguments& arguments, const Log& log, const std::vector<P
 
 std::vector<std::string> output_paths(const MapArguments& arguments) {
   std::vector<std::string> paths{arguments.map_path, ros_yaml_path(arguments.map_path)};
-  for (const std::string& path :
-       {arguments.trajectory_path, arguments.carmen_path, arguments.rawlog_path, arguments.report_path}) {
+  for (const std::string& path : {arguments.trajectory_path, arguments.motions_path, arguments.carmen_path,
+                                  arguments.rawlog_path, arguments.report_path}) {
     if (!path.empty()) paths.push_back(path);
   }
   return paths;
@@ -52,6 +53,7 @@ void prepare_outputs(const MapArguments& arguments, const Log& log, const MapRes
   add_map(arguments.map_path, map, arguments.settings.drawing.draw_path ? &placed : nullptr, outputs);
   add_logs(arguments, log, placed, outputs);
   if (!arguments.trajectory_path.empty()) outputs.add_text(arguments.trajectory_path, tum_trajectory(placed));
+  if (!arguments.motions_path.empty()) outputs.add_text(arguments.motions_path, motion_lines(motions_of(result)));
 }
 
 }  // namespace shapemap::cli
