@@ -29,6 +29,12 @@ std::vector<const Timed*> by_position(const Log& log, const std::vector<Timed>& 
     }
     found[at++] = &line;
   }
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    const bool same_time = log.positions[i].timestamp_s - log.positions[i - 1].timestamp_s == 0.0;
+    if (!same_time || (found[i] == nullptr) == (found[i - 1] == nullptr)) continue;
+    const Timed& line = found[i] ? *found[i] : *found[i - 1];
+    throw InputError(line.where + ": the log repeats this timestamp, and not all of its positions have a line");
+  }
   return found;
 }
 
@@ -55,7 +61,7 @@ void add_covariances(const Log& log, const MotionSources& sources, KnownMotions&
   const std::vector<TimedMotion> lines = read_motions(sources.covariances_path);
   const std::vector<const TimedMotion*> found = by_position(log, lines);
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (!found[i]) continue;
+    if (!found[i] || found[i] == &lines.front()) continue;  // the first one has no motion
     if (sources.poses_path.empty()) motions[i] = Motion{found[i]->previous_from_this, found[i]->covariance};
     if (motions[i]) motions[i]->covariance = found[i]->covariance;
   }

@@ -13,8 +13,8 @@ namespace shapemap::baselines {
 
 /// How far a pose may be from where its motion leads, where no covariance is given.
 struct MotionOptions {
-  double unknown_sigma_m = 0.30;
-  double unknown_sigma_rad = 15 * kDegree;
+  double unknown_sigma_m = 0.60;
+  double unknown_sigma_rad = 20 * kDegree;
   double given_sigma_m = 0.05;
   double given_sigma_rad = 2 * kDegree;
 
@@ -35,7 +35,7 @@ struct MotionSources {
 
 /// One motion for each position that `selection` leaves of `log`. A position without a pose counts as standing still,
 /// and the motion to the next one with a pose leads over it. Throws InputError, also for a line whose timestamp is not
-/// that of a position of the log, after those of the lines before it.
+/// that of a position of the log, after those of the lines before it, and for one that might be of several.
 std::vector<Motion> motions_for(const Log& log, const SelectionOptions& selection, const MotionSources& sources,
                                 const MotionOptions& options);
 

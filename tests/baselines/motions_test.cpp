@@ -46,8 +46,8 @@ TEST_F(Motions, OfNothingAreZeroAndUnsure) {
   ASSERT_EQ(motions.size(), 6U);
   for (const Motion& motion : motions) {
     EXPECT_EQ(motion.previous_from_this, Pose2{});
-    EXPECT_DOUBLE_EQ(motion.covariance(0, 0), 0.3 * 0.3);
-    EXPECT_DOUBLE_EQ(motion.covariance(2, 2), 225 * kDegree * kDegree);
+    EXPECT_DOUBLE_EQ(motion.covariance(0, 0), 0.6 * 0.6);
+    EXPECT_DOUBLE_EQ(motion.covariance(2, 2), 400 * kDegree * kDegree);
   }
 }
 
@@ -57,7 +57,7 @@ TEST_F(Motions, OfPosesLeadOverPositionsWithoutOne) {
   EXPECT_THAT(motions[1].previous_from_this, test::IsNearPose(way(0, 1), 1e-8, 1e-8));
   EXPECT_DOUBLE_EQ(motions[1].covariance(0, 0), 0.05 * 0.05);
   EXPECT_EQ(motions[2].previous_from_this, Pose2{});
-  EXPECT_DOUBLE_EQ(motions[2].covariance(0, 0), 0.3 * 0.3);
+  EXPECT_DOUBLE_EQ(motions[2].covariance(0, 0), 0.6 * 0.6);
   EXPECT_THAT(motions[4].previous_from_this, test::IsNearPose(way(1, 4), 1e-8, 1e-8));
   EXPECT_THAT(motions[5].previous_from_this, test::IsNearPose(way(4, 5), 1e-8, 1e-8));
 }
@@ -75,7 +75,7 @@ TEST_F(Motions, OfSelectedPositionsAreComposed) {
 
 TEST_F(Motions, CovariancesComeFromTheirFile) {
   std::vector<TimedMotion> lines;
-  for (std::size_t i = 1; i < 6; ++i) {
+  for (std::size_t i = 0; i < 6; ++i) {
     const double variance = 0.01 * static_cast<double>(i);
     lines.push_back({log_.positions[i].timestamp_s, {7.0, 8.0, 0.5}, variance * Eigen::Matrix3d::Identity(), ""});
   }
@@ -85,8 +85,8 @@ TEST_F(Motions, CovariancesComeFromTheirFile) {
   for (std::size_t i = 1; i < 6; ++i) {
     EXPECT_THAT(both[i].previous_from_this, test::IsNearPose(way(i - 1, i), 1e-8, 1e-8));
     EXPECT_EQ(alone[i].previous_from_this, (Pose2{7.0, 8.0, 0.5}));
-    EXPECT_EQ(both[i].covariance, lines[i - 1].covariance);
-    EXPECT_EQ(alone[i].covariance, lines[i - 1].covariance);
+    EXPECT_EQ(both[i].covariance, lines[i].covariance);
+    EXPECT_EQ(alone[i].covariance, lines[i].covariance);
   }
 }
 
@@ -105,6 +105,12 @@ TEST_F(Motions, TimesThatRepeatAreTakenInOrder) {
   for (std::size_t i = 1; i < 6; ++i) {
     EXPECT_THAT(motions[i].previous_from_this, test::IsNearPose(way(i - 1, i), 1e-8, 1e-8));
   }
+  const std::string some = tum({0, 1, 3, 4, 5});
+  EXPECT_THAT(
+      [&] {
+        motions_for(log_, {}, {some, ""}, options_);
+      },
+      ThrowsMessage<InputError>(HasSubstr("poses.tum:5: the log repeats")));
 }
 
 TEST(ComposedMotion, HasTheCovarianceOfManyDrawnOnes) {

@@ -60,6 +60,7 @@ std::vector<TimedPose> read_tum_trajectory(const std::string& path) {
 std::vector<TimedMotion> motions_of(const MapResult& result) {
   const std::vector<PlacedPosition>& placed = result.placed();
   std::vector<TimedMotion> motions;
+  if (!placed.empty()) motions.push_back({placed[0].timestamp_s, {}, Eigen::Matrix3d::Zero(), ""});
   for (std::size_t i = 1; i < placed.size(); ++i) {
     const Eigen::Matrix3d& covariance = result.positions.at(placed[i].position_index).alignment.covariance;
     if (!covariance.allFinite()) {

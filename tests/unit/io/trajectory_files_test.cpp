@@ -102,7 +102,7 @@ TEST_F(TrajectoryFiles, BadTumLinesAreNamedWithFileAndLine) {
   fails_with("1 0 0 0 0 0 0 0\n", ":1: qx qy qz qw is no turn");
 }
 
-TEST(Motions, AreThoseBetweenPlacedPositions) {
+TEST(Motions, AreThoseBetweenPlacedPositionsAfterAZeroForTheFirst) {
   MapResult result;
   result.largest_fragment = 0;
   result.fragments.emplace_back();
@@ -116,10 +116,13 @@ TEST(Motions, AreThoseBetweenPlacedPositions) {
   result.fragments[0].positions.push_back({0, 10.0, {1.0, 2.0, kPi / 2}, {}});
   result.fragments[0].positions.push_back({2, 12.0, {1.0, 5.0, kPi}, {}});
   const std::vector<TimedMotion> motions = motions_of(result);
-  ASSERT_EQ(motions.size(), 1U);
-  EXPECT_EQ(motions[0].timestamp_s, 12.0);
-  EXPECT_THAT(motions[0].previous_from_this, IsNearPose(Pose2{3.0, 0.0, kPi / 2}, 1e-12, 1e-12));
-  EXPECT_EQ(motions[0].covariance, Eigen::Matrix3d::Identity() * 2.0);
+  ASSERT_EQ(motions.size(), 2U);
+  EXPECT_EQ(motions[0].timestamp_s, 10.0);
+  EXPECT_EQ(motions[0].previous_from_this, Pose2{});
+  EXPECT_EQ(motions[0].covariance, Eigen::Matrix3d::Zero());
+  EXPECT_EQ(motions[1].timestamp_s, 12.0);
+  EXPECT_THAT(motions[1].previous_from_this, IsNearPose(Pose2{3.0, 0.0, kPi / 2}, 1e-12, 1e-12));
+  EXPECT_EQ(motions[1].covariance, Eigen::Matrix3d::Identity() * 2.0);
 
   result.positions[2].alignment.covariance(0, 0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(motions_of(result), ConfigError);

@@ -29,7 +29,8 @@ struct TimedMotion {
   std::string where;                                     ///< file and line, for messages
 };
 
-/// The motions between the placed positions; see docs/formats.md. Throws ConfigError for a result of the paper's
+/// One for each placed position, as many as tum_trajectory() has lines; that of the first is zero and says nothing. See
+/// docs/formats.md. Throws ConfigError for a result of the paper's
 /// method, which knows no covariances.
 std::vector<TimedMotion> motions_of(const MapResult& result);
 
