@@ -157,7 +157,8 @@ def test_bad_poses_and_covariances_are_refused(baselines_fail, room_log, tmp_pat
     baselines_fail(3, "vasco", "room.log", *OUT, "--poses", "missing.tum", says="missing.tum")
     baselines_fail(3, "vasco", "room.log", *OUT, "--poses", "short.tum", says="short.tum:2")
     baselines_fail(3, "vasco", "room.log", *OUT, "--poses", "other.tum", says="other.tum:2")
-    baselines_fail(3, "mrpt-rbpf", "room.log", *OUT, "--covariances", "bad.motions", says=["bad.motions:1", "covariance"])
+    says = ["bad.motions:1", "covariance"]
+    baselines_fail(3, "mrpt-rbpf", "room.log", *OUT, "--covariances", "bad.motions", says=says)
 
 
 def test_outputs_come_together_or_not_at_all(baselines_fail, room_log, tmp_path):
