@@ -18,10 +18,10 @@ std::vector<Pose2> placed(const std::vector<Position>& scans, const std::vector<
 }
 
 TEST(Vasco, FollowsAWalkWithoutOdometry) {
-  for (const unsigned seed : {1U, 2U, 3U}) {
-    const std::vector<Pose2> truth = test::walk(40);
+  for (const unsigned seed : {1U, 2U}) {
+    const std::vector<Pose2> truth = test::walk(25);
     const std::vector<Pose2> found =
-        placed(test::scans_of(truth, seed), std::vector<Motion>(40, test::nothing_known()));
+        placed(test::scans_of(truth, seed), std::vector<Motion>(25, test::nothing_known()));
     ASSERT_EQ(found.size(), truth.size());
     EXPECT_EQ(found[0], Pose2{});
     const test::WorstMotion worst = test::worst_motion(truth, found);
