@@ -143,7 +143,10 @@ class MrptRbpf : public SlamMethod {
 
   /// MRPT's maps grow to whatever a particle sees.
   void check_size(const Pose2& way) const {
-    double left_m = 0.0, right_m = 0.0, bottom_m = 0.0, top_m = 0.0;
+    double left_m = 0.0;
+    double right_m = 0.0;
+    double bottom_m = 0.0;
+    double top_m = 0.0;
     for (const auto& particle : filter_.mapPDF.m_particles) {
       const auto grid = particle.d->mapTillNow.mapByClass<mrpt::maps::COccupancyGridMap2D>();
       const mrpt::math::TPose3D& last = particle.d->robotPath.back();
