@@ -39,7 +39,7 @@ void read_rows(const std::string& path, const std::array<const char*, kCount>& n
 /// Rounding may leave an eigenvalue a little below zero.
 bool is_covariance(const Eigen::Matrix3d& matrix) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(matrix, Eigen::EigenvaluesOnly);
-  const Eigen::Vector3d values = eigen.eigenvalues();
+  const Eigen::Vector3d& values = eigen.eigenvalues();
   return values.allFinite() && values.minCoeff() >= -1e-9 * std::max(1e-9, values.maxCoeff());
 }
 
