@@ -11,8 +11,11 @@ find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc imgcodecs)
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL 5.5 REQUIRED)       # polyline simplification
 find_package(Ceres 2.1 REQUIRED)      # pose graph
-if(SHAPEMAP_BUILD_APPS)
+if(SHAPEMAP_BUILD_APPS OR SHAPEMAP_BUILD_BASELINES)
   find_package(CLI11 2.1 REQUIRED)
+endif()
+if(SHAPEMAP_BUILD_BASELINES)
+  find_package(mrpt-slam 2.5 REQUIRED)  # the methods of MRPT that ours is compared with
 endif()
 if(SHAPEMAP_BUILD_TESTS)
   find_package(GTest 1.12 REQUIRED)

@@ -36,7 +36,11 @@ class Confinement:
 
 
 CONFINEMENTS = (
-    Confinement("MRPT", "mrpt/*", ("libshapemap/src/io/rawlog*.cpp", "libshapemap/src/io/grid_map.cpp")),
+    Confinement(
+        "MRPT",
+        "mrpt/*",
+        ("libshapemap/src/io/rawlog*.cpp", "libshapemap/src/io/grid_map.cpp", "apps/shapemap-baselines/mrpt_*.cpp"),
+    ),
     Confinement("OpenCV", "opencv2/*", ("libshapemap/src/io/map_image.cpp",)),
     Confinement("CGAL", "CGAL/*", ("libshapemap/src/shape/simplify.cpp",)),
     Confinement("Ceres", "ceres/*", ("libshapemap/src/graph/pose_graph.cpp",)),

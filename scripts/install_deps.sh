@@ -19,7 +19,7 @@ HELP
 
 packages=(
   build-essential cmake ninja-build ccache
-  libmrpt-obs-dev libmrpt-maps-dev
+  libmrpt-obs-dev libmrpt-maps-dev libmrpt-slam-dev
   mrpt-apps mrpt-common # for the tests: rawlog-edit, carmen2rawlog and sample logs
   libopencv-dev libcgal-dev libceres-dev libeigen3-dev libnanoflann-dev nlohmann-json3-dev zlib1g-dev
   libcli11-dev libgtest-dev libgmock-dev libbenchmark-dev

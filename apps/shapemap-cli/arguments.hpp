@@ -18,6 +18,7 @@ struct MapArguments {
   LogFormat format = LogFormat::kAuto;
   std::string map_path;
   std::string trajectory_path;
+  std::string motions_path;
   std::string carmen_path;
   std::string rawlog_path;
   std::string report_path;

@@ -5,6 +5,7 @@
 #include "arguments.hpp"
 #include "command_line.hpp"
 #include "demo_log.hpp"
+#include "map_picture.hpp"
 #include "options_file.hpp"
 #include "shapemap/io/report.hpp"
 
@@ -67,6 +68,8 @@ void add_outputs(CLI::App& app, MapArguments& arguments) {
       "the map, .png, .pgm or .tif, with a .yaml for ROS beside it; example: --out map.png");
   add("--trajectory", arguments.trajectory_path,
       "placed positions as TUM lines, '-' for standard output; example: --trajectory map.tum");
+  add("--motions", arguments.motions_path,
+      "motions between placed positions with covariances, '-' for standard output; example: --motions map.motions");
   add("--carmen-out", arguments.carmen_path,
       "placed positions as a CARMEN log with poses; example: --carmen-out map.log");
   add("--rawlog-out", arguments.rawlog_path,
@@ -80,15 +83,10 @@ void add_outputs(CLI::App& app, MapArguments& arguments) {
 
 void check_out(const MapArguments& arguments) {
   if (arguments.map_path.empty()) throw ConfigError("no map asked for; give --out map.png, .pgm or .tif");
-  const std::size_t dot = arguments.map_path.find_last_of("./");
-  const std::string ending = dot == std::string::npos ? "" : arguments.map_path.substr(dot);
-  if (dot == 0 || arguments.map_path[dot - 1] == '/') {
-    throw ConfigError("--out '" + arguments.map_path + "' has no name before its ending");
+  check_map_path("--out", arguments.map_path);
+  if (!arguments.motions_path.empty() && arguments.settings.mapping.chain.method != Method::kRobust) {
+    throw ConfigError("--motions needs --method robust: the paper's method has no covariances");
   }
-  for (const char* known : {".png", ".pgm", ".tif", ".PNG", ".PGM", ".TIF"}) {
-    if (ending == known) return;
-  }
-  throw ConfigError("--out '" + arguments.map_path + "' must end in .png, .pgm or .tif");
 }
 
 std::string version_text() {

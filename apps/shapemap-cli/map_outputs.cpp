@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "map_outputs.hpp"
 
-#include <filesystem>
-
+#include "map_picture.hpp"
 #include "shapemap/io/grid_map.hpp"
 #include "shapemap/io/map_files.hpp"
+#include "shapemap/io/trajectory_files.hpp"
 #include "signals.hpp"
 
 namespace shapemap::cli {
@@ -19,14 +19,6 @@ Log placed_log(const Log& log, const std::vector<PlacedPosition>& placed, LogPos
     poses.map_from_robot.push_back(place.map_from_robot);
   }
   return part;
-}
-
-void add_map(const MapArguments& arguments, const GridMap& map, const std::vector<PlacedPosition>& placed,
-             OutputSet& outputs) {
-  const auto* path_to_draw = arguments.settings.drawing.draw_path ? &placed : nullptr;
-  outputs.add(arguments.map_path, [&](const std::string& path) { write_map_image(map, path, path_to_draw); });
-  const std::string image_name = std::filesystem::path(arguments.map_path).filename().string();
-  outputs.add_text(ros_yaml_path(arguments.map_path), ros_map_yaml(map, image_name));
 }
 
 void add_logs(const MapArguments& arguments, const Log& log, const std::vector<PlacedPosition>& placed,
@@ -44,14 +36,10 @@ void add_logs(const MapArguments& arguments, const Log& log, const std::vector<P
 
 }  // namespace
 
-std::string ros_yaml_path(const std::string& map_path) {
-  return std::filesystem::path(map_path).replace_extension(".yaml").string();
-}
-
 std::vector<std::string> output_paths(const MapArguments& arguments) {
   std::vector<std::string> paths{arguments.map_path, ros_yaml_path(arguments.map_path)};
-  for (const std::string& path : {arguments.trajectory_path, arguments.carmen_path, arguments.rawlog_path,
-                                  arguments.report_path, arguments.trace_path}) {
+  for (const std::string& path : {arguments.trajectory_path, arguments.motions_path, arguments.carmen_path,
+                                  arguments.rawlog_path, arguments.report_path, arguments.trace_path}) {
     if (!path.empty()) paths.push_back(path);
   }
   return paths;
@@ -62,9 +50,10 @@ void prepare_outputs(const MapArguments& arguments, const Log& log, const MapRes
   set_interrupt_policy(OnInterrupt::kExitAtOnce);  // nothing is open yet, and a large map takes a while
   const GridMap map = build_grid_map(log, placed, arguments.settings.mapping.returns, arguments.settings.grid);
   set_interrupt_policy(OnInterrupt::kFinishStep);
-  add_map(arguments, map, placed, outputs);
+  add_map(arguments.map_path, map, arguments.settings.drawing.draw_path ? &placed : nullptr, outputs);
   add_logs(arguments, log, placed, outputs);
   if (!arguments.trajectory_path.empty()) outputs.add_text(arguments.trajectory_path, tum_trajectory(placed));
+  if (!arguments.motions_path.empty()) outputs.add_text(arguments.motions_path, motion_lines(motions_of(result)));
 }
 
 }  // namespace shapemap::cli

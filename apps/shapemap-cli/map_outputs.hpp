@@ -10,9 +10,6 @@
 
 namespace shapemap::cli {
 
-/// The map.yaml beside the picture.
-std::string ros_yaml_path(const std::string& map_path);
-
 /// All files that a run with `arguments` writes.
 std::vector<std::string> output_paths(const MapArguments& arguments);
 

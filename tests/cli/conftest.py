@@ -10,23 +10,60 @@ sys.path.insert(0, os.path.dirname(__file__))
 import synthetic_log
 
 
+def program_path(variable, name):
+    path = os.environ.get(variable)
+    if not path:
+        pytest.fail(f"set {variable} to the path of {name}")
+    return path
+
+
+def runner(path, folder):
+    """Runs a program in the test's own folder."""
+
+    def run_program(*arguments, **keywords):
+        command = [path, *map(str, arguments)]
+        return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300, **keywords)
+
+    return run_program
+
+
+def failing(run_program, name, files_of):
+    """Checks that a run fails with one line and leaves nothing behind."""
+
+    def check(code, *arguments, says=(), **keywords):
+        before = files_of()
+        result = run_program(*arguments, **keywords)
+        assert result.returncode == code, result.stderr
+        assert result.stdout == ""
+        lines = result.stderr.splitlines()
+        assert len(lines) == 1, result.stderr
+        assert lines[0].startswith(f"{name}: ")
+        for word in [says] if isinstance(says, str) else says:
+            assert word in lines[0]
+        assert files_of() == before
+        return lines[0]
+
+    return check
+
+
 @pytest.fixture(scope="session")
 def cli_path():
-    path = os.environ.get("SHAPEMAP_CLI")
-    if not path:
-        pytest.fail("set SHAPEMAP_CLI to the path of shapemap-cli")
-    return path
+    return program_path("SHAPEMAP_CLI", "shapemap-cli")
+
+
+@pytest.fixture(scope="session")
+def baselines_path():
+    return program_path("SHAPEMAP_BASELINES", "shapemap-baselines")
 
 
 @pytest.fixture
 def run(cli_path, tmp_path):
-    """Runs the program in the test's own folder."""
+    return runner(cli_path, tmp_path)
 
-    def run_cli(*arguments, **keywords):
-        command = [cli_path, *map(str, arguments)]
-        return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300, **keywords)
 
-    return run_cli
+@pytest.fixture
+def run_baselines(baselines_path, tmp_path):
+    return runner(baselines_path, tmp_path)
 
 
 @pytest.fixture(scope="session")
@@ -49,22 +86,12 @@ def files_of(tmp_path):
 
 @pytest.fixture
 def fails(run, files_of):
-    """Checks that a run fails with one line and leaves nothing behind."""
+    return failing(run, "shapemap-cli", files_of)
 
-    def check(code, *arguments, says=(), **keywords):
-        before = files_of()
-        result = run(*arguments, **keywords)
-        assert result.returncode == code, result.stderr
-        assert result.stdout == ""
-        lines = result.stderr.splitlines()
-        assert len(lines) == 1, result.stderr
-        assert lines[0].startswith("shapemap-cli: ")
-        for word in [says] if isinstance(says, str) else says:
-            assert word in lines[0]
-        assert files_of() == before
-        return lines[0]
 
-    return check
+@pytest.fixture
+def baselines_fail(run_baselines, files_of):
+    return failing(run_baselines, "shapemap-baselines", files_of)
 
 
 @pytest.fixture(scope="session")

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <cmath>
-
 #include "shapemap/io/pair_files.hpp"
 #include "text.hpp"
 
@@ -15,14 +13,6 @@ std::size_t index_from(std::string_view word, const char* name, std::size_t num_
     throw lines.error(std::string(name) + " is '" + std::string(word) + "', " + expected);
   }
   return static_cast<std::size_t>(*index);
-}
-
-double finite_from(std::string_view word, const char* name, const LineReader& lines) {
-  const std::optional<double> value = parse_number(word);
-  if (!value || !std::isfinite(*value)) {
-    throw lines.error(std::string(name) + " is '" + std::string(word) + "', expected a number");
-  }
-  return *value;
 }
 
 }  // namespace
@@ -42,9 +32,9 @@ std::vector<PositionPair> read_pairs(const std::string& path, std::size_t num_re
     pair.reference = index_from(words.next(), "the reference", num_references, lines);
     pair.query = index_from(words.next(), "the query", num_queries, lines);
     if (count == 5) {
-      const double x_m = finite_from(words.next(), "x_m", lines);
-      const double y_m = finite_from(words.next(), "y_m", lines);
-      pair.given_ref_from_query = Pose2{x_m, y_m, wrap_angle(finite_from(words.next(), "theta_rad", lines))};
+      const double x_m = lines.finite(words.next(), "x_m");
+      const double y_m = lines.finite(words.next(), "y_m");
+      pair.given_ref_from_query = Pose2{x_m, y_m, wrap_angle(lines.finite(words.next(), "theta_rad"))};
     }
     pairs.push_back(pair);
   }

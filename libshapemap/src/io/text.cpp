@@ -67,6 +67,14 @@ std::optional<std::string_view> LineReader::next() {
   return line;
 }
 
+double LineReader::finite(std::string_view word, const char* name) const {
+  const std::optional<double> value = parse_number(word);
+  if (!value || !std::isfinite(*value)) {
+    throw error(std::string(name) + " is '" + std::string(word) + "', expected a number");
+  }
+  return *value;
+}
+
 std::string LineReader::where() const { return source_.path() + ":" + std::to_string(line_number_); }
 
 InputError LineReader::error(const std::string& what) const { return InputError(where() + ": " + escaped(what)); }

@@ -23,6 +23,8 @@ class LineReader {
   /// For a fault in the latest line: "path:line: what".
   InputError error(const std::string& what) const;
   std::string where() const;
+  /// The number that `word` of the latest line is. Throws InputError naming `name` when it is none, or not finite.
+  double finite(std::string_view word, const char* name) const;
 
  private:
   ByteSource& source_;

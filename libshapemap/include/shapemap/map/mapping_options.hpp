@@ -67,7 +67,7 @@ struct SmoothingOptions {
 struct ChainOptions {
   Method method = Method::kRobust;
   int target_scans = 3;
-  int threads = 1;
+  int threads = 0;
   int seed = 0;
 
   template <class Self, class Visit>
@@ -75,7 +75,7 @@ struct ChainOptions {
     visit(Field{"method", "how scans are aligned"}, self.method);
     visit(Field{"target-scans", "previous scans that make the target of the paper's method", 1, 100},
           self.target_scans);
-    visit(Field{"threads", "worker threads; the result does not depend on it", 1, 256}, self.threads);
+    visit(Field{"threads", "worker threads, 0: one per processor; the result does not depend on it", 0, 256}, self.threads);
     visit(Field{"seed", "seed of everything random; neither method draws anything", 0, 2147483647}, self.seed);
   }
 };

@@ -4,9 +4,10 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <string_view>
+#include <cstring>
 
 #include "exit_codes.hpp"
+#include "run_program.hpp"
 
 namespace shapemap::cli {
 namespace {
@@ -18,8 +19,9 @@ volatile std::sig_atomic_t was_interrupted = 0;
 extern "C" void on_interrupt(int /*signal*/) {
   was_interrupted = 1;
   if (exit_at_once == 0) return;
-  constexpr std::string_view message = "shapemap-cli: interrupted; nothing written\n";
-  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, message.data(), message.size());
+  for (const char* part : {kProgramName, ": interrupted; nothing written\n"}) {
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, part, std::strlen(part));
+  }
   ::_exit(kExitInterrupted);
 }
 

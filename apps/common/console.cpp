@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "run_program.hpp"
 #include "shapemap/core/angles.hpp"
 #include "shapemap/core/errors.hpp"
 
@@ -61,10 +62,10 @@ void print_text(const std::string& text) {
 void print_lines(const std::string& prefix, const std::vector<std::string>& lines, std::size_t max_lines,
                  const std::string& where) {
   for (std::size_t i = 0; i < lines.size() && i < max_lines; ++i) {
-    std::fprintf(stderr, "shapemap-cli: %s%s\n", prefix.c_str(), printable(lines[i]).c_str());
+    std::fprintf(stderr, "%s: %s%s\n", kProgramName, prefix.c_str(), printable(lines[i]).c_str());
   }
   if (lines.size() > max_lines) {
-    std::fprintf(stderr, "shapemap-cli: %s... and %zu more%s\n", prefix.c_str(), lines.size() - max_lines,
+    std::fprintf(stderr, "%s: %s... and %zu more%s\n", kProgramName, prefix.c_str(), lines.size() - max_lines,
                  where.c_str());
   }
 }

@@ -14,12 +14,6 @@ std::string limits_text(const Field& field) {
   return number_text(field.lowest, 1.0) + " to " + number_text(field.highest, 1.0);
 }
 
-OptionTable option_table(MapSettings& settings) {
-  OptionTable table;
-  MapSettings::groups(settings, [&](const char* title, auto& group) { append_options(table, title, group); });
-  return table;
-}
-
 const OptionEntry* find_option(const OptionTable& table, const std::string& name) {
   const auto found =
       std::find_if(table.begin(), table.end(), [&](const OptionEntry& entry) { return entry.name == name; });

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "numbers.hpp"
-#include "settings.hpp"
 #include "shapemap/core/options.hpp"
 
 namespace shapemap::cli {
@@ -84,7 +83,12 @@ void append_options(OptionTable& table, const std::string& group, Options& optio
 }
 
 /// Every option of `settings`, in the order of its groups. The table must not outlive `settings`.
-OptionTable option_table(MapSettings& settings);
+template <class Settings>
+OptionTable option_table(Settings& settings) {
+  OptionTable table;
+  Settings::groups(settings, [&](const char* title, auto& group) { append_options(table, title, group); });
+  return table;
+}
 
 /// The entry called `name`, or null.
 const OptionEntry* find_option(const OptionTable& table, const std::string& name);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "option_table.hpp"
+#include "shapemap/io/log_file.hpp"
 
 /// CLI11 as all commands use it.
 namespace shapemap::cli {

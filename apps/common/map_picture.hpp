@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "output_set.hpp"
+#include "shapemap/io/grid_map.hpp"
+
+/// The picture of a map and the map.yaml beside it.
+namespace shapemap::cli {
+
+/// Throws ConfigError when the file that `option` gives is no picture that can be written.
+void check_map_path(const std::string& option, const std::string& map_path);
+
+/// The map.yaml beside the picture.
+std::string ros_yaml_path(const std::string& map_path);
+
+/// Prepares both; `path_to_draw` may be null.
+void add_map(const std::string& map_path, const GridMap& map, const std::vector<PlacedPosition>* path_to_draw,
+             OutputSet& outputs);
+
+}  // namespace shapemap::cli

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "shapemap/core/options.hpp"
+#include "slam_method.hpp"
+
+namespace shapemap::baselines {
+
+struct RbpfOptions {
+  int particles = 25;
+  int samples = 400;
+  double cell_m = 0.07;
+  double longest_beam_m = 35.0;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"particles", "particles of the filter", 1, 10000}, self.particles);
+    visit(Field{"samples", "motions that are tried for each particle", 1, 1000000}, self.samples);
+    visit(Field{"rbpf-cell-m", "side of a cell of the particles' maps [m]", 0.01, 1}, self.cell_m);
+    visit(Field{"rbpf-longest-beam-m", "longer beams enter no map [m]", 1, 1000}, self.longest_beam_m);
+  }
+};
+
+/// MRPT's CMetricMapBuilderRBPF: particles that are whole trajectories with a grid map each; of each particle's
+/// possible motions those are likely to be taken that go with the scan. The motions' covariances are its motion model.
+/// MRPT's random numbers, which are global, begin anew with `seed`.
+std::unique_ptr<SlamMethod> make_mrpt_rbpf(const RbpfOptions& options, int seed);
+
+}  // namespace shapemap::baselines

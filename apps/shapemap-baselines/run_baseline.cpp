@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run_baseline.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "console.hpp"
+#include "costs.hpp"
+#include "exit_codes.hpp"
+#include "map_picture.hpp"
+#include "run_observer.hpp"
+#include "run_program.hpp"
+#include "shapemap/core/errors.hpp"
+#include "shapemap/io/map_files.hpp"
+
+namespace shapemap::baselines {
+namespace {
+
+std::vector<std::string> output_paths(const Arguments& arguments) {
+  std::vector<std::string> paths{arguments.trajectory_path};
+  if (arguments.map_path.empty()) return paths;
+  paths.push_back(arguments.map_path);
+  paths.push_back(cli::ros_yaml_path(arguments.map_path));
+  return paths;
+}
+
+void check_paths(const Arguments& arguments) {
+  for (const std::string& input :
+       {arguments.log_path, arguments.motions.poses_path, arguments.motions.covariances_path}) {
+    if (!input.empty()) cli::check_outputs(output_paths(arguments), input, arguments.force);
+  }
+}
+
+/// What shapemap takes for no return is none for the other methods either.
+void drop_non_returns(Log& log, const ReturnOptions& options) {
+  for (Position& position : log.positions) {
+    for (SubScan& sub_scan : position.sub_scans) {
+      const RangeLimits limits = range_limits(sub_scan, options);
+      for (float& range_m : sub_scan.ranges_m) {
+        if (!is_return(range_m, limits)) range_m = std::numeric_limits<float>::quiet_NaN();
+      }
+    }
+  }
+}
+
+/// The poses of the positions that were placed before an end of time or memory, in the frame of the first.
+std::vector<PlacedPosition> place_all(const Log& log, const std::vector<Motion>& motions, const Arguments& arguments,
+                                      std::vector<std::string>& warnings) {
+  const std::unique_ptr<SlamMethod> method = make_method(arguments.method, arguments.settings);
+  cli::ConsoleObserver observer(!arguments.quiet);
+  const cli::Stopwatch stopwatch;
+  const double max_s = arguments.settings.run.max_seconds;
+  const std::size_t num_positions = log.positions.size();
+  for (std::size_t i = 0; i < num_positions; ++i) {
+    if (!observer.keep_going()) throw Interrupted();
+    const bool late = max_s > 0.0 && stopwatch.seconds() > max_s;
+    std::string why = late ? "--max-seconds is over" : "";
+    try {
+      if (!late) method->add(log.positions[i], motions[i]);
+    } catch (const CannotGoOn& e) {
+      why = e.what();
+    }
+    if (!why.empty()) {
+      warnings.push_back(std::to_string(num_positions - i) + " of " + std::to_string(num_positions) +
+                         " positions are not placed: " + why);
+      break;
+    }
+    observer.on_progress(i + 1, num_positions);
+  }
+  observer.finish();
+
+  std::vector<PlacedPosition> placed;
+  for (const Pose2& pose : method->map_from_robot()) {
+    const Position& position = log.positions[placed.size()];
+    placed.push_back({placed.size(), position.timestamp_s, pose, std::vector<Pose2>(position.sub_scans.size())});
+  }
+  if (placed.empty()) throw InputError(arguments.log_path + ": no position could be placed; nothing written");
+  const Pose2 first_from_map = inverse(placed.front().map_from_robot);
+  for (PlacedPosition& place : placed) place.map_from_robot = first_from_map * place.map_from_robot;
+  return placed;
+}
+
+void write_outputs(const Arguments& arguments, const Log& log, const std::vector<PlacedPosition>& placed) {
+  cli::OutputSet outputs;
+  if (!arguments.map_path.empty()) {
+    cli::set_interrupt_policy(cli::OnInterrupt::kExitAtOnce);  // nothing is open yet
+    const GridMap map = build_grid_map(log, placed, arguments.settings.returns, arguments.settings.grid);
+    cli::set_interrupt_policy(cli::OnInterrupt::kFinishStep);
+    cli::add_map(arguments.map_path, map, nullptr, outputs);
+  }
+  outputs.add_text(arguments.trajectory_path, tum_trajectory(placed));
+  outputs.commit();
+}
+
+void print_summary(const Arguments& arguments, const Log& log, const std::vector<PlacedPosition>& placed,
+                   double wall_s) {
+  std::string written;
+  for (const std::string& path : output_paths(arguments)) {
+    written += (written.empty() ? "" : ", ") + (path == "-" ? "standard output" : path);
+  }
+  std::fprintf(stderr, "%s: %s placed %zu of %zu positions in %.1f s, %.0f MiB; written: %s\n", cli::kProgramName,
+               enum_name(arguments.method).c_str(), placed.size(), log.positions.size(), wall_s, cli::peak_memory_mib(),
+               cli::printable(written).c_str());
+}
+
+int run(const Arguments& arguments) {
+  const cli::Stopwatch total;
+  const BaselineSettings& settings = arguments.settings;
+  check_paths(arguments);
+  Log log = read_log(arguments.log_path, arguments.format, settings.reading);
+  const std::vector<Motion> motions = motions_for(log, settings.selection, arguments.motions, settings.motion);
+  log = select_positions(std::move(log), settings.selection);
+  drop_non_returns(log, settings.returns);
+  std::vector<std::string> warnings = log.warnings;
+
+  cli::set_interrupt_policy(cli::OnInterrupt::kFinishStep);
+  const std::vector<PlacedPosition> placed = place_all(log, motions, arguments, warnings);
+  write_outputs(arguments, log, placed);
+  if (!arguments.quiet) {
+    cli::print_lines("warning: ", warnings, cli::kMaxListed, "");
+    print_summary(arguments, log, placed, total.seconds());
+  }
+  return placed.size() == log.positions.size() ? cli::kExitOk : cli::kExitIncomplete;
+}
+
+}  // namespace
+
+std::unique_ptr<SlamMethod> make_method(BaselineMethod method, const BaselineSettings& settings) {
+  switch (method) {
+    case BaselineMethod::kMrptIcp:
+      return make_mrpt_icp(settings.icp, settings.returns);
+    case BaselineMethod::kMrptRbpf:
+      return make_mrpt_rbpf(settings.rbpf, settings.run.seed);
+    case BaselineMethod::kVasco:
+      return make_vasco(settings.vasco, settings.returns);
+  }
+  throw ConfigError("no such method");
+}
+
+int run_command_line(const std::vector<std::string>& typed) {
+  const std::optional<Arguments> arguments = parse_arguments(typed);
+  return arguments ? run(*arguments) : cli::kExitOk;
+}
+
+}  // namespace shapemap::baselines
