@@ -27,9 +27,14 @@ struct Pair {
   std::size_t b;
 };
 
-/// Most of the pairs have nothing in common, and all rotations would be tried on each.
+/// Most of the pairs have nothing in common, and there are many: a search with less effort, which other scans of the
+/// same two stretches make up for.
 HypothesisSearchOptions quick(HypothesisSearchOptions search) {
   search.hypotheses.all_rotations_below = -std::numeric_limits<double>::infinity();
+  search.hypotheses.rotation_peaks = std::max(1, search.hypotheses.rotation_peaks * 3 / 4);
+  search.hypotheses.shape_segments = 0;
+  search.hypotheses.refined = std::max(1, search.hypotheses.refined / 2);
+  search.voting.peaks = std::max(1, search.voting.peaks / 2);
   return search;
 }
 
