@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <Eigen/LU>
+
 #include <cmath>
 #include <map>
 #include <set>

@@ -22,6 +22,9 @@ using test::IsNearPose;
 
 using Error = Eigen::Vector3d;
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
 /// By the definition: where node b is for node a, less where it was measured.
 Error error_of(const PoseConstraint& constraint, const std::vector<Pose2>& poses) {
   const Pose2 found = inverse(poses[constraint.a]) * poses[constraint.b];
@@ -182,8 +185,8 @@ TEST(SolvePoseGraph, TheWorseMeasuredGivesWay) {
   PoseConstraint sure{0, 1, {1.0, 0.0, 0.0}, Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal(), 0.0};
   PoseConstraint vague{0, 1, {2.0, 0.0, 0.0}, Eigen::Vector3d(0.03, 0.01, 0.01).asDiagonal(), 0.0};
   const PoseGraphSolution found = solve_pose_graph({{}, {}}, {sure, vague});
-  EXPECT_NEAR(found.map_from_node[1].x_m, 1.25, 1e-6);
-  EXPECT_NEAR(found.chi_square, 0.0625 / 0.01 + 0.5625 / 0.03, 1e-6);
+  EXPECT_NEAR(found.map_from_node[1].x_m, 1.25, 1e-3);
+  EXPECT_NEAR(found.chi_square, 0.0625 / 0.01 + 0.5625 / 0.03, 1e-3);
 }
 
 TEST(SolvePoseGraph, GivesTheSameBitsTwice) {
@@ -206,7 +209,7 @@ TEST(SolvePoseGraph, OfNothingIsNothing) {
   EXPECT_EQ(found.chi_square, 0.0);
 }
 
-TEST(SolvePoseGraph, RefusesNodesThatDoNotExistAndCovariancesThatAreNone) {
+TEST(SolvePoseGraph, RefusesNodesThatDoNotExistAndNumbersThatAreNone) {
   const std::vector<Pose2> poses(3);
   const PoseConstraint good{0, 1, {1.0, 0.0, 0.0}, Eigen::Matrix3d::Identity(), 0.0};
   EXPECT_NO_THROW(solve_pose_graph(poses, {good}));
@@ -219,8 +222,11 @@ TEST(SolvePoseGraph, RefusesNodesThatDoNotExistAndCovariancesThatAreNone) {
   refused({0, 1, {}, Eigen::Matrix3d::Zero(), 0.0});
   refused({0, 1, {}, -Eigen::Matrix3d::Identity(), 0.0});
   refused({0, 1, {}, Eigen::Vector3d(1.0, -1.0, 1.0).asDiagonal(), 0.0});
-  refused({0, 1, {}, Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN()), 0.0});
-  refused({0, 1, {}, std::numeric_limits<double>::infinity() * Eigen::Matrix3d::Identity(), 0.0});
+  refused({0, 1, {}, Eigen::Matrix3d::Constant(kNan), 0.0});
+  refused({0, 1, {}, Eigen::Vector3d(kInfinity, 1.0, 1.0).asDiagonal(), 0.0});
+  refused({0, 1, {kInfinity, 0.0, 0.0}, Eigen::Matrix3d::Identity(), 0.0});
+  refused({0, 1, {0.0, 0.0, kNan}, Eigen::Matrix3d::Identity(), 0.0});
+  EXPECT_THROW(solve_pose_graph({{}, {0.0, kNan, 0.0}}, {good}), std::invalid_argument);
 }
 
 TEST(SquaredError, IsInStandardDeviationsAndWithoutTheLoss) {
