@@ -103,6 +103,17 @@ TEST(CloseLoops, RefusesALoopThatIsWrongHoweverStrong) {
   EXPECT_LT(test::worst_off_m(both.map_from_node, ring.truth), kGood_m);
 }
 
+/// The graph could bear it; the scans speak against it.
+TEST(CloseLoops, RefusesALoopThatPullsScansThatAgreeApart) {
+  Ring ring(0.0);
+  for (ChainLink& link : ring.links) link.alternatives[0].covariance = test::covariance_of(0.3, 10 * kDegree);
+  const auto shifted_by = [&](double shift_m) {
+    return test::cluster_of(ring.truth, 0, kRingLap, kAgain, 12.0, {shift_m, 0.0, 0.0});
+  };
+  EXPECT_THAT(ring.closed({shifted_by(1.2)}).accepted, IsEmpty());
+  EXPECT_THAT(ring.closed({shifted_by(0.0)}).accepted, ElementsAre(0));
+}
+
 TEST(CloseLoops, LeavesAloneWhatIsTooWeak) {
   const Ring ring;
   EXPECT_THAT(ring.closed({ring.again(1.0)}).accepted, IsEmpty());

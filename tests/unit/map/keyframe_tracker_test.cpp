@@ -71,6 +71,25 @@ TEST(KeyframeTracker, WithoutAKeyframeOrWithAStepOfNoneAttachesNothing) {
   EXPECT_FALSE(tracker.follow(*view_at(ahead(0.0))));
 }
 
+/// How the robot moved in another log is no hint.
+TEST(KeyframeTracker, ForgetsTheMotionWhenAnotherLogStarts) {
+  const MappingOptions options;
+  KeyframeTracker used(options);
+  used.start(view_at(ahead(0.0)));
+  for (unsigned k = 1; k <= 4; ++k) ASSERT_TRUE(used.follow(*view_at(ahead(0.09 * k), k)));
+  KeyframeTracker fresh(options);
+  for (KeyframeTracker* tracker : {&used, &fresh}) {
+    tracker->start(nullptr);
+    EXPECT_FALSE(tracker->follow(*view_at(ahead(8.0))));
+    tracker->start(view_at(ahead(8.0)));
+  }
+  const ScanView next = test::view_from(test::ring_world(1), ahead(8.02));
+  const auto expected = fresh.follow(next);
+  const auto found = used.follow(next);
+  ASSERT_TRUE(expected && found);
+  EXPECT_THAT(found->ref_from_query, test::HasSameBits(expected->ref_from_query));
+}
+
 Log dense_log(std::size_t count) {
   Log log;
   const test::World world = test::ring_world(1);
