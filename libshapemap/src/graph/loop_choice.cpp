@@ -18,6 +18,9 @@ constexpr double kApart_m = 1e4;
 /// The chain's probabilities allow for scans of different places, which neighbours are not.
 constexpr double kPriorOfLinks = 2.0;
 
+/// Pairs of scans do not tell independently of each other.
+constexpr double kEvidenceWeight = 0.5;
+
 constexpr double kSure = 0.9;
 constexpr double kLeastStep_m = 0.3;
 
@@ -129,7 +132,7 @@ double LoopProblem::cost_of_links(const LoopChoice& choice) const {
 }
 
 void LoopProblem::rate(LoopChoice& choice) {
-  choice.value = evidence_.of(choice.map_from_node) - 0.5 * choice.chi_square - cost_of_links(choice);
+  choice.value = kEvidenceWeight * evidence_.of(choice.map_from_node) - 0.5 * choice.chi_square - cost_of_links(choice);
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
     if (choice.accepted[k]) choice.value += worth(k);
   }

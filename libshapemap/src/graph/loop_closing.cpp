@@ -19,13 +19,20 @@ constexpr double kContradicts_rad = 10 * kDegree;
 
 constexpr double kLeastStrength = 4.0;
 constexpr double kStrong = 10.0;
+constexpr double kVeryDoubtful = 0.65;
 constexpr int kRoundsOfClosing = 3;
 constexpr int kRoundsOfRepair = 4;
 constexpr std::size_t kDoubtfulPerLoop = 4;
 
+/// What joins two pieces is all that tells of where they are to each other. It must be this strong, come from so many
+/// nodes of each, and be so many times as strong as the next that would join them otherwise: places look alike.
+constexpr double kJoiningStrength = 18.0;
+constexpr std::size_t kJoiningNodes = 3;
+constexpr double kJoiningLead = 2.0;
+
 /// A change is not pursued when the map is so much worse before loops follow.
-constexpr double kHopelessLink = 60.0;
-constexpr double kHopelessLoop = 400.0;
+constexpr double kHopelessLink = 30.0;
+constexpr double kHopelessLoop = 200.0;
 
 bool within(const Pose2& off, double metres, double radians) {
   return off.translation().norm() < metres && std::abs(off.theta_rad) < radians;
@@ -63,20 +70,48 @@ class LoopCloser {
     return true;
   }
 
-  /// Brings two pieces that nothing joins yet to where a loop wants them.
-  void join_pieces(LoopChoice& map, std::size_t k) const {
+  std::vector<std::size_t> pieces(const LoopChoice& map) const {
+    return connected_parts(problem_.num_nodes(), problem_.constraints(map));
+  }
+
+  /// Whether loop `k` may decide where two pieces are to each other.
+  bool can_join(const LoopChoice& map, const std::vector<std::size_t>& piece, std::size_t k) const {
+    const LoopCluster& cluster = clusters_[k];
+    if (cluster.strength < kJoiningStrength || std::min(cluster.num_a, cluster.num_b) < kJoiningNodes) return false;
     const PoseConstraint& loop = problem_.best_member(k);
-    const std::vector<std::size_t> piece = connected_parts(problem_.num_nodes(), problem_.constraints(map));
-    if (piece[loop.a] == piece[loop.b]) return;
-    const Pose2 move = map.map_from_node[loop.a] * loop.a_from_b * inverse(map.map_from_node[loop.b]);
+    const Pose2 move = join(map, loop);
+    for (std::size_t other = 0; other < clusters_.size(); ++other) {
+      if (clusters_[other].strength * kJoiningLead < cluster.strength) continue;
+      const PoseConstraint& rival = problem_.best_member(other);
+      const bool same_pieces = piece[rival.a] == piece[loop.a] && piece[rival.b] == piece[loop.b];
+      if (!same_pieces) continue;
+      const Pose2 predicted = inverse(map.map_from_node[rival.a]) * move * map.map_from_node[rival.b];
+      if (!within(inverse(rival.a_from_b) * predicted, kContradicts_m, kContradicts_rad)) return false;
+    }
+    return true;
+  }
+
+  /// How the piece of the later node moves to where a loop wants it.
+  static Pose2 join(const LoopChoice& map, const PoseConstraint& loop) {
+    return map.map_from_node[loop.a] * loop.a_from_b * inverse(map.map_from_node[loop.b]);
+  }
+
+  /// Brings two pieces that nothing joins yet to where a loop wants them; false if it may not decide that.
+  bool join_pieces(LoopChoice& map, std::size_t k) const {
+    const PoseConstraint& loop = problem_.best_member(k);
+    const std::vector<std::size_t> piece = pieces(map);
+    if (piece[loop.a] == piece[loop.b]) return true;
+    if (!can_join(map, piece, k)) return false;
+    const Pose2 move = join(map, loop);
     for (std::size_t n = 0; n < problem_.num_nodes(); ++n) {
       if (piece[n] == piece[loop.b]) map.map_from_node[n] = move * map.map_from_node[n];
     }
+    return true;
   }
 
   bool try_loop(LoopChoice& map, std::size_t k) {
     LoopChoice trial = map;
-    join_pieces(trial, k);
+    if (!join_pieces(trial, k)) return false;
     trial.accepted[k] = 1;
     problem_.solve(trial);
     const double without_scans = problem_.worth(k) - 0.5 * (trial.chi_square - map.chi_square);
@@ -144,7 +179,8 @@ class LoopCloser {
       trial.link_choice[i] = choice;
       const Pose2& a_from_b = links_[i].alternatives[static_cast<std::size_t>(choice)].a_from_b;
       swing(trial, i, trial.map_from_node[i] * a_from_b * inverse(trial.map_from_node[i + 1]));
-      if (better_when_closed(trial, best, kHopelessLink)) return true;
+      const bool was_changed = best.link_choice[i] != 0;
+      if (better_when_closed(trial, best, was_changed ? kHopelessLoop : kHopelessLink)) return true;
     }
     return false;
   }
@@ -152,7 +188,9 @@ class LoopCloser {
   /// A strong loop that does not fit: one of the alignments along it may be wrong.
   bool try_cutting_for(LoopChoice& best, std::size_t k) {
     const PoseConstraint& loop = problem_.best_member(k);
-    std::vector<std::size_t> doubtful = doubtful_links(loop.a, loop.b, kDoubtfulPerLoop);
+    const std::vector<std::size_t> piece = pieces(best);
+    if (piece[loop.a] != piece[loop.b]) return false;
+    const std::vector<std::size_t> doubtful = doubtful_links(loop.a, loop.b, kDoubtfulPerLoop);
     for (const std::size_t i : doubtful) {
       if (best.link_choice[i] == kCut || !observer_.keep_going()) continue;
       LoopChoice trial = best;
@@ -168,7 +206,7 @@ class LoopCloser {
   std::vector<std::size_t> doubtful_links(std::size_t first, std::size_t last, std::size_t count) const {
     std::vector<std::size_t> doubtful;
     for (std::size_t i = first; i < last; ++i) {
-      if (links_[i].exists() && links_[i].probability < options_.doubt_below) doubtful.push_back(i);
+      if (links_[i].exists() && links_[i].probability < doubt_below_) doubtful.push_back(i);
     }
     std::stable_sort(doubtful.begin(), doubtful.end(),
                      [&](std::size_t i, std::size_t j) { return links_[i].probability < links_[j].probability; });
@@ -176,7 +214,24 @@ class LoopCloser {
     return doubtful;
   }
 
+  /// Those that do not take what the chain took.
+  std::vector<std::size_t> changed_links(const LoopChoice& map) const {
+    std::vector<std::size_t> changed;
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      if (links_[i].exists() && map.link_choice[i] != 0) changed.push_back(i);
+    }
+    return changed;
+  }
+
+  /// The most doubtful links come first: a wrong loop that needs a better link cut must not get in their way.
   void repair(LoopChoice& best) {
+    for (const double doubt_below : {kVeryDoubtful * options_.doubt_below, options_.doubt_below}) {
+      doubt_below_ = doubt_below;
+      repair_doubtful(best);
+    }
+  }
+
+  void repair_doubtful(LoopChoice& best) {
     bool better = true;
     for (int round = 0; better && round < kRoundsOfRepair; ++round) {
       better = false;
@@ -186,8 +241,9 @@ class LoopCloser {
         --left;
         better = try_cutting_for(best, k) || better;
       }
+      for (const std::size_t i : changed_links(best)) better = try_alternatives(best, i) || better;
       for (const std::size_t i : doubtful_links(0, links_.size(), static_cast<std::size_t>(options_.repairs))) {
-        better = try_alternatives(best, i) || better;
+        if (best.link_choice[i] == 0) better = try_alternatives(best, i) || better;
       }
     }
   }
@@ -197,6 +253,7 @@ class LoopCloser {
   const std::vector<LoopCluster>& clusters_;
   const LoopClosingOptions& options_;
   RunObserver& observer_;
+  double doubt_below_ = 0.0;  ///< links that are less probable may be changed
 };
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace {
 
 /// Of each pair of scans, so many poses.
 constexpr std::size_t kPosesPerPair = 3;
+constexpr std::size_t kBridgePoses = 5;
 
 /// Nodes on either side of a bridge.
 constexpr std::size_t kBridgeNodes = 4;
@@ -27,10 +28,14 @@ struct Pair {
   std::size_t b;
 };
 
-/// Most of the pairs have nothing in common, and there are many: a search with less effort, which other scans of the
-/// same two stretches make up for.
-HypothesisSearchOptions quick(HypothesisSearchOptions search) {
+/// Where most of the pairs have little in common, all rotations would be tried on each.
+HypothesisSearchOptions without_all_rotations(HypothesisSearchOptions search) {
   search.hypotheses.all_rotations_below = -std::numeric_limits<double>::infinity();
+  return search;
+}
+
+/// For very many pairs: a search with less effort, which other scans of the same two stretches make up for.
+HypothesisSearchOptions quick(HypothesisSearchOptions search) {
   search.hypotheses.rotation_peaks = std::max(1, search.hypotheses.rotation_peaks * 3 / 4);
   search.hypotheses.shape_segments = 0;
   search.hypotheses.refined = std::max(1, search.hypotheses.refined / 2);
@@ -39,10 +44,10 @@ HypothesisSearchOptions quick(HypothesisSearchOptions search) {
 }
 
 std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, const HypothesisSearchOptions& search,
-                                    double least_probability) {
+                                    std::size_t most, double least_probability) {
   const std::vector<PoseHypothesis> poses = pose_hypotheses(*views[pair.a], *views[pair.b], search);
   std::vector<LoopHypothesis> found;
-  for (std::size_t k = 0; k < std::min(kPosesPerPair, poses.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(most, poses.size()); ++k) {
     const double margin = k == 0 ? lead_of_first(poses) : poses[k].score - poses[0].score;
     const double p = std::clamp(match_probability(poses[k], margin), 1e-9, 1.0 - 1e-9);
     if (p < least_probability) continue;
@@ -53,7 +58,8 @@ std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, co
 }
 
 std::vector<LoopHypothesis> all_aligned(const NodeViews& views, const std::vector<Pair>& pairs,
-                                        const HypothesisSearchOptions& search, double least_probability, int threads,
+                                        const HypothesisSearchOptions& search, std::size_t most,
+                                        double least_probability, int threads,
                                         RunObserver& observer) {
   std::vector<LoopHypothesis> all;
   for (std::size_t first = 0; first < pairs.size(); first += kBlock) {
@@ -61,7 +67,7 @@ std::vector<LoopHypothesis> all_aligned(const NodeViews& views, const std::vecto
     const std::size_t count = std::min(kBlock, pairs.size() - first);
     std::vector<std::vector<LoopHypothesis>> found(count);
     parallel_for(count, threads,
-                 [&](std::size_t i) { found[i] = aligned(views, pairs[first + i], search, least_probability); });
+                 [&](std::size_t i) { found[i] = aligned(views, pairs[first + i], search, most, least_probability); });
     for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
     observer.on_progress(first + count, pairs.size());
   }
@@ -87,7 +93,7 @@ std::vector<LoopHypothesis> likely_loops(const NodeViews& views, const Hypothesi
   for (std::size_t b = 0; b < views.size(); ++b) {
     for (const LikelyPlace& place : places[b]) pairs.push_back({place.node, b});
   }
-  return all_aligned(views, pairs, quick(search), options.least_probability, threads, observer);
+  return all_aligned(views, pairs, quick(without_all_rotations(search)), kPosesPerPair, options.least_probability, threads, observer);
 }
 
 std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<std::size_t>& links,
@@ -98,7 +104,7 @@ std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<st
       for (std::size_t b = link + 1; b < std::min(views.size(), link + 1 + kBridgeNodes); ++b) pairs.push_back({a, b});
     }
   }
-  return all_aligned(views, pairs, quick(search), 0.0, threads, observer);
+  return all_aligned(views, pairs, without_all_rotations(search), kBridgePoses, 0.0, threads, observer);
 }
 
 }  // namespace shapemap

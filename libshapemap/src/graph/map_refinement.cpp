@@ -47,8 +47,9 @@ std::vector<Neighbour> neighbours(const std::vector<Pose2>& poses, const Refinem
 
 std::vector<Pose2> refine_map(const std::vector<std::shared_ptr<const ScanView>>& views,
                               std::vector<Pose2> map_from_node, const std::vector<PoseConstraint>& chain,
-                              const HypothesisSearchOptions& search, const RefinementOptions& options, int threads) {
-  for (int round = 0; round < options.rounds; ++round) {
+                              const HypothesisSearchOptions& search, const RefinementOptions& options, int threads,
+                              RunObserver& observer) {
+  for (int round = 0; round < options.rounds && observer.keep_going(); ++round) {
     const std::vector<Neighbour> pairs = neighbours(map_from_node, options);
     std::vector<std::optional<PoseConstraint>> found(pairs.size());
     parallel_for(pairs.size(), threads, [&](std::size_t i) {

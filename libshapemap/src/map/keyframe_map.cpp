@@ -144,7 +144,7 @@ KeyframeMap map_with_loops(const KeyframeChain& chain, const MappingOptions& opt
   std::vector<PoseConstraint> known = link_constraints(chain, map.link_choice);
   known.insert(known.end(), loops.begin(), loops.end());
   map.map_from_keyframe = refine_map(views, solution.map_from_node, known, options.robust.search, options.refinement,
-                                     options.chain.threads);
+                                     options.chain.threads, observer);
   for (const std::size_t k : solution.accepted) map.loops.push_back(closed_loop(chain, clusters[k]));
   return map;
 }

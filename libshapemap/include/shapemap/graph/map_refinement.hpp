@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "shapemap/align/pose_hypothesis.hpp"
+#include "shapemap/core/observer.hpp"
 #include "shapemap/core/options.hpp"
 #include "shapemap/graph/pose_graph.hpp"
 
@@ -32,9 +33,10 @@ struct RefinementOptions {
 };
 
 /// Aligns all scans that see the same from where the map has them, beside `chain`, and solves for all of it; several
-/// times, since what is nearer to right aligns better.
+/// times, since what is nearer to right aligns better. Stops between two times when the observer asks to.
 std::vector<Pose2> refine_map(const std::vector<std::shared_ptr<const ScanView>>& views,
                               std::vector<Pose2> map_from_node, const std::vector<PoseConstraint>& chain,
-                              const HypothesisSearchOptions& search, const RefinementOptions& options, int threads);
+                              const HypothesisSearchOptions& search, const RefinementOptions& options, int threads,
+                              RunObserver& observer);
 
 }  // namespace shapemap
