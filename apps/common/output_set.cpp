@@ -103,7 +103,7 @@ void OutputSet::add_text(const std::string& path, const std::string& content) {
 }
 
 OutputSet::NewFolder::~NewFolder() {
-  ::rmdir(path_.c_str());  // fails, as it should, where files have come to their places
+  if (!keep_) ::rmdir(path_.c_str());
 }
 
 void OutputSet::add_folder(const std::string& path) {
@@ -128,6 +128,7 @@ void OutputSet::commit(IfInterrupted rule) {
     }
     throw;
   }
+  for (const auto& folder : folders_) folder->keep();
   for (const std::string& path : outdated_) {
     std::error_code ignored;
     fs::remove(path, ignored);

@@ -48,9 +48,11 @@ class OutputSet {
     ~NewFolder();
     NewFolder(const NewFolder&) = delete;
     NewFolder& operator=(const NewFolder&) = delete;
+    void keep() { keep_ = true; }
 
    private:
     std::string path_;
+    bool keep_ = false;
   };
   struct File {
     std::string path;

@@ -11,10 +11,10 @@ namespace shapemap::cli {
 namespace {
 
 CLI::Option* add_paths(CLI::App& app, const char* name, const char* help) {
-  const auto keep = [](const CLI::results_t&) { return true; };
-  return app.add_option(name, keep, help)
-      ->expected(-1)
-      ->allow_extra_args(false)  // one path a flag; and a path in brackets is no list
+  return app
+      .add_option(
+          name, [](const CLI::results_t&) { return true; }, help)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->option_text("LOG")
       ->group("Input");
 }
@@ -34,7 +34,7 @@ void check_no_file_twice(const std::vector<LogSource>& logs) {
 void LogSourceFlags::add(CLI::App& app) {
   CLI::Option* any =
       add_paths(app, "LOG", "log to map, or several for one map; formats are recognised from the content");
-  kinds_.push_back({any->option_text(" "), LogFormat::kAuto});
+  kinds_.push_back({any->expected(-1)->allow_extra_args()->option_text(" "), LogFormat::kAuto});
   kinds_.push_back(
       {add_paths(app, "--rawlog", "an MRPT rawlog, plain or gzip; example: --rawlog run.rawlog"), LogFormat::kRawlog});
   kinds_.push_back(
@@ -44,7 +44,7 @@ void LogSourceFlags::add(CLI::App& app) {
   app.add_flag("--demo", demo_, "map the log that comes with shapemap; example: --demo --out map.png")->group("Input");
 }
 
-std::vector<LogSource> LogSourceFlags::take(const CLI::App& app) const {
+std::vector<LogSource> LogSourceFlags::take(const CLI::App& app, const std::vector<std::string>& typed) const {
   std::vector<LogSource> logs;
   std::map<const CLI::Option*, std::size_t> num_taken;
   for (const CLI::Option* option : app.parse_order()) {
@@ -55,6 +55,10 @@ std::vector<LogSource> LogSourceFlags::take(const CLI::App& app) const {
   if (demo_ && !logs.empty()) throw ConfigError("give logs or --demo, not both");
   if (demo_) return {{demo_log_path(), LogFormat::kAuto}};
   if (logs.empty()) throw ConfigError("no log given: LOG, --rawlog, --carmen, --nist or --demo; see --help");
+  for (const LogSource& log : logs) {
+    if (std::find(typed.begin(), typed.end(), log.path) != typed.end() || log.format != LogFormat::kAuto) continue;
+    throw ConfigError("a log whose name is in brackets is given as './[...]'");  // CLI11 takes it for a list
+  }
   check_no_file_twice(logs);
   return logs;
 }

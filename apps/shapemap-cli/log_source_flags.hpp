@@ -14,7 +14,7 @@ class LogSourceFlags {
  public:
   void add(CLI::App& app);
   /// In the order in which they were typed. Throws ConfigError when there is none, or one twice.
-  std::vector<LogSource> take(const CLI::App& app) const;
+  std::vector<LogSource> take(const CLI::App& app, const std::vector<std::string>& typed) const;
 
  private:
   struct Kind {

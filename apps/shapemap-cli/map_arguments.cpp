@@ -107,7 +107,7 @@ std::optional<MapArguments> parse_map_arguments(const std::vector<std::string>& 
   if (verbose) arguments.verbosity = Verbosity::kVerbose;
   if (quiet) arguments.verbosity = Verbosity::kQuiet;
   if (arguments.dump_config) return arguments;
-  arguments.logs = sources.take(app);
+  arguments.logs = sources.take(app, typed);
   check_out(arguments);
   return arguments;
 }

@@ -16,10 +16,13 @@ std::string counted(std::size_t count, const char* what) {
 
 void print_line(const std::string& text) { std::fprintf(stderr, "%s: %s\n", kProgramName, printable(text).c_str()); }
 
-/// What makes the map though its alignment is in doubt.
-bool is_doubtful(const PositionResult& position) {
-  return position.fragment >= 0 && !position.starts_fragment && !position.alignment.ok();
+/// Whether an alignment to the positions before is behind its place; not so at the start of a log.
+bool is_chained(const PositionResult& position) {
+  return position.fragment >= 0 && !position.starts_fragment && position.alignment.status != AlignStatus::kNoShape;
 }
+
+/// What makes the map though its alignment is in doubt.
+bool is_doubtful(const PositionResult& position) { return is_chained(position) && !position.alignment.ok(); }
 
 bool is_uncertain(const PositionResult& position) { return is_doubtful(position) && !position.held_by_loops; }
 
@@ -40,7 +43,7 @@ void print_uncertain(const MapResult& result) {
   std::size_t ambiguous = 0;
   std::size_t degenerate = 0;
   for (const PositionResult& position : result.positions) {
-    if (position.fragment >= 0 && !position.starts_fragment) ++aligned;
+    if (is_chained(position)) ++aligned;
     if (is_doubtful(position) && position.held_by_loops) ++held;
     if (!is_uncertain(position)) continue;
     const AlignStatus status = position.alignment.status;

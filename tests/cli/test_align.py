@@ -177,7 +177,7 @@ def test_options_files_of_both_commands_fit(run, align, tmp_path, room_log):
         ["room.log", "--gap", "1", "--out", "room.log", "--force"],
         ["room.log", "--pairs", "pairs.txt", "--out", "pairs.txt", "--force"],
         ["room.log", "--gap", "1", "--out", "p.jsonl", "--from", "bag"],
-        ["room.log", "--gap", "1", "--out", "p.jsonl", "--threads", "0"],
+        ["room.log", "--gap", "1", "--out", "p.jsonl", "--threads", "-1"],
         ["room.log", "--gap", "1", "--out", "p.jsonl", "--lcs-band", "3"],
     ],
 )
