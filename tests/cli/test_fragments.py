@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What nothing ties to the map gets maps of its own."""
+
 import json
-import os
 import resource
 import signal
 
@@ -85,4 +85,4 @@ def test_a_full_disk_leaves_no_fragments_and_no_folder(fails, split_log, tmp_pat
         resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300))
 
     fails(5, *split_log, preexec_fn=set_limit)
-    assert not os.path.exists(tmp_path / "apart")
+    assert not (tmp_path / "apart").exists()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ctrl-C at any moment: code 130, soon, with the map so far; a second one leaves no trace of the run."""
+
 import json
 import os
 import re

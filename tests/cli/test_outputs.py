@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a run writes, and that it comes whole or not at all."""
+
 import json
 import math
 import os
@@ -54,7 +55,7 @@ def test_a_run_maps_the_room_and_writes_all_that_is_asked_for(run, room_log, tmp
         assert abs(x - pose["x_m"]) < 1e-5
         assert abs(y - pose["y_m"]) < 1e-5
         assert abs(math.degrees(theta) - pose["theta_deg"]) < 1e-3
-    assert "image: \"map.png\"" in (tmp_path / "map.yaml").read_text()
+    assert 'image: "map.png"' in (tmp_path / "map.yaml").read_text()
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
     assert (tmp_path / "out.rawlog.gz").read_bytes().startswith(b"\x1f\x8b")
 
@@ -123,8 +124,10 @@ def test_what_loops_hold_is_not_uncertain(run, room_log, tmp_path):
     assert f"{uncertain} of 35 alignments are uncertain" in result.stderr
     assert f"; {len(held)} more would be, but loops hold these positions" in result.stderr
     listed = [line for line in result.stderr.splitlines() if " ambiguous: the pose" in line]
-    assert [f"position {p['index']} " in line for p, line in
-            zip((p for p in doubtful if not p["held_by_loops"]), listed, strict=True)] == [True] * uncertain
+    assert [
+        f"position {p['index']} " in line
+        for p, line in zip((p for p in doubtful if not p["held_by_loops"]), listed, strict=True)
+    ] == [True] * uncertain
 
 
 def test_the_report_tells_loops_keyframes_and_stages(run, room_log, tmp_path):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Odometry never reaches the map, and neither threads nor a second run change a byte."""
+
 import json
 
 import pytest

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Several logs, one map: what each gets, what is said of it, and what is refused."""
+
 import json
 import math
 
@@ -35,8 +36,11 @@ def test_two_robots_make_one_map(run, robots, tmp_path, files_of):
         *["--carmen-out", "map.log.gz", "--rawlog-out", "all.rawlog", "--trace", "trace.jsonl"],
     )
     assert result.returncode == 0, result.stderr
-    per_log = [f"{stem}.{robot}.{end}" for robot in ("robot1", "robot2")
-               for stem, end in (("map", "tum"), ("map", "motions"), ("map", "log.gz"), ("all", "rawlog"))]
+    per_log = [
+        f"{stem}.{robot}.{end}"
+        for robot in ("robot1", "robot2")
+        for stem, end in (("map", "tum"), ("map", "motions"), ("map", "log.gz"), ("all", "rawlog"))
+    ]
     assert set(files_of()) - before == {"map.png", "map.yaml", "r.json", "trace.jsonl", *per_log}
     assert "robot1.log: placed 9 of 9 positions" in result.stderr
     assert "robot2.rawlog: placed 10 of 10 positions" in result.stderr
@@ -48,8 +52,10 @@ def test_two_robots_make_one_map(run, robots, tmp_path, files_of):
     heading = truth[0][2] - one[0][3]
     for row, (x, y, theta) in zip(one + two, truth[:9] + truth[4:], strict=True):
         dx, dy = row[1] - one[0][1], row[2] - one[0][2]
-        in_room = (truth[0][0] + math.cos(heading) * dx - math.sin(heading) * dy,
-                   truth[0][1] + math.sin(heading) * dx + math.cos(heading) * dy)
+        in_room = (
+            truth[0][0] + math.cos(heading) * dx - math.sin(heading) * dy,
+            truth[0][1] + math.sin(heading) * dx + math.cos(heading) * dy,
+        )
         assert math.dist(in_room, (x, y)) < 0.05
         assert abs(math.remainder(row[3] + heading - theta, 2 * math.pi)) < math.radians(1)
     for robot, count in (("robot1", 9), ("robot2", 10)):
@@ -78,7 +84,8 @@ def test_the_report_and_the_trace_tell_which_position_is_whose(run, robots, tmp_
     assert records[0]["log"] == "robot1.log"
     assert records[0]["logs"] == [{"path": log["path"], "first_index": log["first_index"]} for log in logs]
     traced = [record for record in records if record["record"] == "position"]
-    assert [(r["log"], r["index_in_whole_log"]) for r in traced] == [(p["log"], p["index_in_whole_log"]) for p in positions]
+    places = [(p["log"], p["index_in_whole_log"]) for p in positions]
+    assert [(record["log"], record["index_in_whole_log"]) for record in traced] == places
 
 
 def test_messages_say_whose_position_it_is(run, room_log, tmp_path):
@@ -99,7 +106,10 @@ def test_a_log_of_another_place_stays_apart(run, room_log, repository, tmp_path)
     assert len(read_tum(tmp_path / "t.nist_arena.tum")) == 16
     assert (tmp_path / "t.room.tum").read_text() == ""
     assert [p.name for p in sorted((tmp_path / "apart").iterdir())] == [
-        "fragment_1.png", "fragment_1.room.tum", "fragment_1.yaml"]
+        "fragment_1.png",
+        "fragment_1.room.tum",
+        "fragment_1.yaml",
+    ]
 
 
 def test_logs_of_one_name_get_outputs_of_two(run, room_text, tmp_path):
@@ -121,10 +131,13 @@ def test_one_log_keeps_the_exact_names(run, room_log, files_of):
 
 def test_the_order_of_flags_is_the_order_of_logs(run, robots, tmp_path):
     """However a log is named, the map has the frame of the first one."""
-    for arguments in (["--carmen", robots[0], robots[1]], [robots[0], "--rawlog", robots[1]],
-                      ["--out", "x.png", robots[0], "--force", "--rawlog", robots[1]]):
-        result = run(*arguments, "--report", "-", *([] if "--out" in arguments else ["--out", "x.png"]), "--force") \
-            if "--force" not in arguments else run(*arguments, "--report", "-")
+    one, two = robots
+    for arguments in (
+        ["--carmen", one, two, "--out", "x.png", "--force"],
+        [one, "--rawlog", two, "--out", "x.png", "--force"],
+        ["--out", "x.png", one, "--force", "--rawlog", two],
+    ):
+        result = run(*arguments, "--report", "-")
         assert result.returncode == 0, result.stderr
         assert [log["path"] for log in json.loads(result.stdout)["logs"]] == list(robots)
 

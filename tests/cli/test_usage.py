@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is typed: help, flags and the options file."""
+
 import re
 import subprocess
 import tomllib
