@@ -89,7 +89,8 @@ bool parse(CLI::App& app, const std::vector<std::string>& arguments) {
 std::string exit_code_help() {
   return "Exit codes: 0 done, a map has all positions; 1 unexpected failure; 2 wrong usage; 3 unreadable or malformed "
          "input,\n"
-         "nothing written; 4 map written, some positions not placed; 5 cannot write; 130 interrupted.";
+         "nothing written; 4 map written, some positions not placed; 5 cannot write; 130 interrupted: of a map,\n"
+         "what was mapped by then is written.";
 }
 
 }  // namespace shapemap::cli

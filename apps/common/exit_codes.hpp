@@ -11,7 +11,7 @@ enum ExitCode : int {
   kExitInput = 3,         ///< unreadable or malformed input; nothing written
   kExitIncomplete = 4,    ///< map written, some positions not placed
   kExitOutput = 5,        ///< cannot write
-  kExitInterrupted = 130  ///< Ctrl-C; nothing written
+  kExitInterrupted = 130  ///< Ctrl-C; a map of what was mapped by then is written, else nothing
 };
 
 }  // namespace shapemap::cli

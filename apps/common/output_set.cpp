@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "output_set.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -21,22 +22,16 @@ fs::file_status status_of(const std::string& path) {
   return fs::status(path, ignored);
 }
 
-/// Where nothing can be put in place afterwards: standard output, a device, a pipe.
-bool is_stream(const std::string& path) {
-  if (path == "-") return true;
-  const fs::file_status status = status_of(path);
-  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
-}
-
 void write_stream(const std::string& path, const std::string& content) {
+  errno = 0;
   std::FILE* stream = path == "-" ? stdout : std::fopen(path.c_str(), "wb");
-  if (!stream && interrupted()) throw Interrupted();
+  if (!stream && errno == EINTR && interrupted()) throw Interrupted();
   if (!stream) throw OutputError("cannot write '" + path + "': " + std::strerror(errno));
   const bool written = std::fwrite(content.data(), 1, content.size(), stream) == content.size();
   const bool flushed = std::fflush(stream) == 0;
   const int error = errno;
   if (stream != stdout) std::fclose(stream);
-  if (interrupted()) throw Interrupted();
+  if ((!written || !flushed) && error == EINTR && interrupted()) throw Interrupted();
   if (!written || !flushed) throw OutputError("cannot write '" + path + "': " + std::strerror(error));
 }
 
@@ -61,14 +56,20 @@ std::string with_name(std::string message, const std::string& temporary_path, co
   return at == std::string::npos ? message : message.replace(at, temporary_path.size(), path);
 }
 
+}  // namespace
+
+bool is_stream(const std::string& path) {
+  if (path == "-") return true;
+  const fs::file_status status = status_of(path);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
 bool same_file(const std::string& a, const std::string& b) {
   if (a == "-" || b == "-") return a == b;
   std::error_code ignored;
   const auto full = [&](const std::string& path) { return fs::weakly_canonical(fs::absolute(path), ignored); };
   return full(a) == full(b) || fs::equivalent(a, b, ignored);
 }
-
-}  // namespace
 
 void check_outputs(const std::vector<std::string>& paths, const std::string& input, bool force) {
   for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -85,6 +86,7 @@ void OutputSet::add(const std::string& path, const Writer& write) {
   const bool is_new = !fs::exists(status_of(path));
   files_.push_back({path, is_new, std::make_unique<AtomicFile>(path)});
   const std::string& temporary_path = files_.back().file->temporary_path();
+  clean_up_in(fs::path(temporary_path).parent_path().string());
   try {
     write(temporary_path);
   } catch (const OutputError& e) {
@@ -100,10 +102,22 @@ void OutputSet::add_text(const std::string& path, const std::string& content) {
   }
 }
 
-void OutputSet::commit() {
+OutputSet::NewFolder::~NewFolder() {
+  if (!keep_) ::rmdir(path_.c_str());
+}
+
+void OutputSet::add_folder(const std::string& path) {
+  if (fs::is_directory(status_of(path))) return;
+  if (::mkdir(path.c_str(), 0777) != 0) throw OutputError("cannot make folder '" + path + "': " + std::strerror(errno));
+  folders_.push_back(std::make_unique<NewFolder>(path));
+  clean_up_in(path, true);
+}
+
+void OutputSet::commit(IfInterrupted rule) {
   // Streams first: they cannot be taken back, and the files need nothing but a rename any more.
   for (const Stream& stream : streams_) write_stream(stream.path, stream.content);
-  if (interrupted()) throw Interrupted();
+  if (interrupted() && rule == IfInterrupted::kDropAll) throw Interrupted();
+  set_interrupt_policy(OnInterrupt::kFinishAll);
   std::size_t num_done = 0;
   try {
     for (; num_done < files_.size(); ++num_done) files_[num_done].file->commit();
@@ -113,6 +127,11 @@ void OutputSet::commit() {
       if (files_[i].is_new) fs::remove(files_[i].path, ignored);
     }
     throw;
+  }
+  for (const auto& folder : folders_) folder->keep();
+  for (const std::string& path : outdated_) {
+    std::error_code ignored;
+    fs::remove(path, ignored);
   }
 }
 

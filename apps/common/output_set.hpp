@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "shapemap/io/atomic_file.hpp"
@@ -15,6 +16,15 @@ namespace shapemap::cli {
 /// are the same file; OutputError when a folder is missing or closed, or a file exists and `force` is false.
 void check_outputs(const std::vector<std::string>& paths, const std::string& input, bool force);
 
+/// Where nothing can be put in place afterwards: standard output ("-"), a device, a pipe.
+bool is_stream(const std::string& path);
+
+/// Also by way of links; "-" is only itself.
+bool same_file(const std::string& a, const std::string& b);
+
+/// What OutputSet::commit() does when the run was interrupted before the first file is in place.
+enum class IfInterrupted { kDropAll, kWriteAll };
+
 class OutputSet {
  public:
   using Writer = std::function<void(const std::string& temporary_path)>;
@@ -23,11 +33,27 @@ class OutputSet {
   void add(const std::string& path, const Writer& write);
   /// `path` may also be "-" for standard output, a device or a pipe; those are written on commit.
   void add_text(const std::string& path, const std::string& content);
+  /// Makes the folder unless it is there; it goes again with what was to be in it.
+  void add_folder(const std::string& path);
+  /// A file that goes when the others have come.
+  void remove(const std::string& path) { outdated_.push_back(path); }
   /// Everything to its place. When something fails, what is new among the outputs is taken away again.
-  /// Throws Interrupted when that was asked for before the first file is in place.
-  void commit();
+  /// Throws Interrupted by the rule, and when an interrupt ends the wait for the reader of a pipe.
+  void commit(IfInterrupted rule = IfInterrupted::kDropAll);
 
  private:
+  class NewFolder {
+   public:
+    explicit NewFolder(std::string path) : path_(std::move(path)) {}
+    ~NewFolder();
+    NewFolder(const NewFolder&) = delete;
+    NewFolder& operator=(const NewFolder&) = delete;
+    void keep() { keep_ = true; }
+
+   private:
+    std::string path_;
+    bool keep_ = false;
+  };
   struct File {
     std::string path;
     bool is_new;
@@ -37,8 +63,10 @@ class OutputSet {
     std::string path;
     std::string content;
   };
+  std::vector<std::unique_ptr<NewFolder>> folders_;  ///< before the files, which must be gone first
   std::vector<File> files_;
   std::vector<Stream> streams_;
+  std::vector<std::string> outdated_;
 };
 
 }  // namespace shapemap::cli

@@ -3,8 +3,10 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace shapemap::cli {
 namespace {
@@ -18,30 +20,51 @@ std::string duration_text(double seconds) {
 
 }  // namespace
 
-std::string progress_line(std::size_t done, std::size_t total, const char* what, double elapsed_s, std::size_t width) {
-  const std::size_t filled = total > 0 ? width * done / total : 0;
-  std::string line = "[" + std::string(filled, '=') + std::string(width - filled, ' ') + "] " + std::to_string(done) +
-                     "/" + std::to_string(total);
-  if (done > 0 && elapsed_s > 0.0) {
-    const double rate = static_cast<double>(done) / elapsed_s;
+std::string progress_line(const Progress& progress, std::size_t width) {
+  std::string line = progress.stage + (progress.stage.empty() ? "" : " ");
+  if (progress.total == 0) return line + duration_text(progress.elapsed_s);
+  const std::size_t filled = width * progress.done / progress.total;
+  line += "[" + std::string(filled, '=') + std::string(width - filled, ' ') + "] " + std::to_string(progress.done) +
+          "/" + std::to_string(progress.total);
+  if (progress.done > 0 && progress.elapsed_s > 0.0) {
+    const double rate = static_cast<double>(progress.done) / progress.elapsed_s;
     char text[32];
     std::snprintf(text, sizeof text, "  %.1f ", rate);
-    line += std::string(text) + what + "/s  ETA " + duration_text(static_cast<double>(total - done) / rate);
+    line += std::string(text) + progress.what + "/s  ETA " +
+            duration_text(static_cast<double>(progress.total - progress.done) / rate);
   }
   return line;
 }
 
-ProgressBar::ProgressBar(bool enabled, const char* what)
-    : enabled_(enabled && ::isatty(STDERR_FILENO) == 1), what_(what) {}
+ProgressBar::ProgressBar(bool enabled, const char* what) : enabled_(enabled && ::isatty(STDERR_FILENO) == 1) {
+  progress_.what = what;
+}
+
+void ProgressBar::start(std::string stage, const char* what) {
+  progress_ = {std::move(stage), what, 0, 0, 0.0};
+  start_ = Clock::now();
+  draw(true);
+}
 
 void ProgressBar::update(std::size_t done, std::size_t total) {
+  if (total != progress_.total) progress_.done = 0;
+  progress_.total = total;
+  progress_.done = std::min(std::max(progress_.done, done), total);
+  draw(done == total || !visible_);
+}
+
+void ProgressBar::tick() {
+  if (visible_) draw(false);
+}
+
+void ProgressBar::draw(bool at_once) {
   if (!enabled_) return;
   const Clock::time_point now = Clock::now();
-  if (visible_ && done < total && now - last_drawn_ < std::chrono::milliseconds(100)) return;
+  if (!at_once && now - last_drawn_ < std::chrono::milliseconds(100)) return;
   last_drawn_ = now;
   visible_ = true;
-  const double elapsed_s = std::chrono::duration<double>(now - start_).count();
-  std::fprintf(stderr, "\r\033[K%s", progress_line(done, total, what_, elapsed_s, 30).c_str());
+  progress_.elapsed_s = std::chrono::duration<double>(now - start_).count();
+  std::fprintf(stderr, "\r\033[K%s", progress_line(progress_, 30).c_str());
   std::fflush(stderr);
 }
 

@@ -7,8 +7,17 @@
 
 namespace shapemap::cli {
 
+/// What a bar tells.
+struct Progress {
+  std::string stage;      ///< what is done now; empty where all is one stage
+  const char* what = "";  ///< is counted
+  std::size_t done = 0;
+  std::size_t total = 0;   ///< 0: not known, and then there is a time and no bar
+  double elapsed_s = 0.0;  ///< since the stage began
+};
+
 /// The line of a bar of `width` characters with rate and time left.
-std::string progress_line(std::size_t done, std::size_t total, const char* what, double elapsed_s, std::size_t width);
+std::string progress_line(const Progress& progress, std::size_t width);
 
 /// Draws on stderr, over and over on one line, at most ten times a second; nothing unless stderr is a terminal.
 class ProgressBar {
@@ -19,15 +28,22 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
+  /// From here on, `what` is counted anew.
+  void start(std::string stage, const char* what);
+  /// Within a stage the bar never goes back.
   void update(std::size_t done, std::size_t total);
+  /// Time goes on, whether there is progress or not.
+  void tick();
   /// Takes the bar off the screen, so that other lines can follow.
   void clear();
 
  private:
   using Clock = std::chrono::steady_clock;
 
+  void draw(bool at_once);
+
   bool enabled_;
-  const char* what_;
+  Progress progress_;
   bool visible_ = false;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_drawn_;

@@ -17,7 +17,14 @@ class ConsoleObserver : public RunObserver {
 
   void on_progress(std::size_t done, std::size_t total) override { progress_.update(done, total); }
   void on_warning(std::string_view message) override { warnings_.emplace_back(message); }
-  bool keep_going() override { return !interrupted(); }
+  void on_stage(std::string_view stage) override {
+    if (interrupted()) return;  // it will not be done
+    progress_.start(std::string(stage), stage == "chain" ? "positions" : "pairs");
+  }
+  bool keep_going() override {
+    progress_.tick();
+    return !interrupted();
+  }
 
   void finish() { progress_.clear(); }
   const std::vector<std::string>& warnings() const { return warnings_; }

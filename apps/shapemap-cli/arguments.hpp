@@ -13,9 +13,13 @@ namespace shapemap::cli {
 
 enum class Verbosity { kQuiet, kNormal, kVerbose };
 
-struct MapArguments {
-  std::string log_path;
+struct LogSource {
+  std::string path;
   LogFormat format = LogFormat::kAuto;
+};
+
+struct MapArguments {
+  std::vector<LogSource> logs;  ///< no file twice
   std::string map_path;
   std::string trajectory_path;
   std::string motions_path;
@@ -23,6 +27,7 @@ struct MapArguments {
   std::string rawlog_path;
   std::string report_path;
   std::string trace_path;
+  std::string fragments_folder;
   bool force = false;
   bool dump_config = false;  ///< print the options and do nothing else
   Verbosity verbosity = Verbosity::kNormal;

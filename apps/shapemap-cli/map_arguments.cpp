@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <array>
-#include <utility>
-
 #include "arguments.hpp"
 #include "command_line.hpp"
-#include "demo_log.hpp"
+#include "log_source_flags.hpp"
+#include "map_outputs.hpp"
 #include "map_picture.hpp"
 #include "options_file.hpp"
 #include "shapemap/io/report.hpp"
@@ -20,45 +18,11 @@ constexpr const char* kExamples =
     "(a log that is called 'info', 'convert' or 'align' is given as ./info)\n\n"
     "Examples:\n"
     "  shapemap-cli --demo --out map.png --draw-path\n"
+    "  shapemap-cli robot1.rawlog robot2.log.gz --out map.png --trajectory map.tum\n"
     "  shapemap-cli intel.log.gz --out map.png --trajectory map.tum --report report.json\n"
     "  shapemap-cli --rawlog run.rawlog --sensor-label FRONT --out map.pgm --resolution-m 0.02\n"
     "  shapemap-cli --dump-config --threads 4 > options.toml\n"
     "  shapemap-cli run.log --config options.toml --out map.tif --force\n\n";
-
-/// The ways to name the log; exactly one is used.
-struct Source {
-  std::string any, rawlog, carmen, nist;
-  bool demo = false;
-};
-
-void add_source(CLI::App& app, Source& source) {
-  app.add_option("LOG", source.any, "log to map; its format is recognised from its content")->option_text(" ");
-  const auto add = [&](const char* name, std::string& path, const char* help) {
-    app.add_option(name, path, help)->option_text("LOG")->group("Input");
-  };
-  add("--rawlog", source.rawlog, "an MRPT rawlog, plain or gzip; example: --rawlog run.rawlog");
-  add("--carmen", source.carmen, "a CARMEN log, plain or gzip; example: --carmen intel.log.gz");
-  add("--nist", source.nist, "a NIST text log or bare numbers; example: --nist arena.nist");
-  app.add_flag("--demo", source.demo, "map the log that comes with shapemap; example: --demo --out map.png")
-      ->group("Input");
-}
-
-void take_source(const Source& source, MapArguments& arguments) {
-  const std::array<std::pair<const std::string*, LogFormat>, 4> given{{{&source.any, LogFormat::kAuto},
-                                                                       {&source.rawlog, LogFormat::kRawlog},
-                                                                       {&source.carmen, LogFormat::kCarmen},
-                                                                       {&source.nist, LogFormat::kNist}}};
-  int num_given = source.demo ? 1 : 0;
-  for (const auto& [path, format] : given) {
-    if (path->empty()) continue;
-    ++num_given;
-    arguments.log_path = *path;
-    arguments.format = format;
-  }
-  if (num_given > 1) throw ConfigError("give one log only: LOG, --rawlog, --carmen, --nist or --demo");
-  if (num_given == 0) throw ConfigError("no log given: LOG, --rawlog, --carmen, --nist or --demo; see --help");
-  if (source.demo) arguments.log_path = demo_log_path();
-}
 
 void add_outputs(CLI::App& app, MapArguments& arguments) {
   const auto add = [&](const char* name, std::string& path, const char* help) {
@@ -78,6 +42,10 @@ void add_outputs(CLI::App& app, MapArguments& arguments) {
       "options, results, timings as JSON, '-' for standard output; example: --report report.json");
   add("--trace", arguments.trace_path,
       "every step that led to the map, a JSON object a line, .gz compresses; example: --trace trace.jsonl");
+  app.add_option("--fragments", arguments.fragments_folder,
+                 "a map and a trajectory of each fragment that nothing ties to the map; example: --fragments apart")
+      ->option_text("FOLDER")
+      ->group("Output");
   app.add_flag("--force", arguments.force, "replace outputs that exist")->group("Output");
 }
 
@@ -86,6 +54,14 @@ void check_out(const MapArguments& arguments) {
   check_map_path("--out", arguments.map_path);
   if (!arguments.motions_path.empty() && arguments.settings.mapping.chain.method != Method::kRobust) {
     throw ConfigError("--motions needs --method robust: the paper's method has no covariances");
+  }
+  if (arguments.logs.size() < 2) return;
+  if (arguments.settings.mapping.chain.method != Method::kRobust) {
+    throw ConfigError("several logs need --method robust: the paper's method never joins what it has not chained");
+  }
+  for (const auto& [option, path] : per_log_outputs(arguments)) {
+    if (!is_stream(path)) continue;
+    throw ConfigError(std::string(option) + " '" + path + "' is no file; with several logs, each gets one of its own");
   }
 }
 
@@ -101,7 +77,7 @@ std::string version_text() {
 
 std::optional<MapArguments> parse_map_arguments(const std::vector<std::string>& typed) {
   MapArguments arguments;
-  Source source;
+  LogSourceFlags sources;
   std::string config_path;
   bool strict_paper = false;
   bool quiet = false;
@@ -111,7 +87,7 @@ std::optional<MapArguments> parse_map_arguments(const std::vector<std::string>& 
   CLI::App app("A 2D map from laser scans alone, without odometry.", "shapemap-cli");
   app.footer(kExamples + exit_code_help());
   app.set_version_flag("--version", version_text(), "print versions and exit");
-  add_source(app, source);
+  sources.add(app);
   add_outputs(app, arguments);
   CLI::Option* quiet_flag = app.add_flag("--quiet", quiet, "print errors only");
   app.add_flag("--verbose", verbose, "print what the log holds, times, and all positions without a place")
@@ -131,7 +107,7 @@ std::optional<MapArguments> parse_map_arguments(const std::vector<std::string>& 
   if (verbose) arguments.verbosity = Verbosity::kVerbose;
   if (quiet) arguments.verbosity = Verbosity::kQuiet;
   if (arguments.dump_config) return arguments;
-  take_source(source, arguments);
+  arguments.logs = sources.take(app, typed);
   check_out(arguments);
   return arguments;
 }

@@ -1,59 +1,89 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "map_outputs.hpp"
 
+#include "fragment_files.hpp"
 #include "map_picture.hpp"
-#include "shapemap/io/grid_map.hpp"
 #include "shapemap/io/map_files.hpp"
 #include "shapemap/io/trajectory_files.hpp"
-#include "signals.hpp"
 
 namespace shapemap::cli {
 namespace {
 
 /// The positions that have a pose, and only those.
-Log placed_log(const Log& log, const std::vector<PlacedPosition>& placed, LogPoses& poses) {
+Log placed_log(const LogSet& logs, std::size_t which, const std::vector<PlacedPosition>& placed, LogPoses& poses) {
   Log part;
-  part.format = log.format;
+  part.format = logs.files.at(which).format;
   for (const PlacedPosition& place : placed) {
-    part.positions.push_back(log.positions.at(place.position_index));
+    part.positions.push_back(logs.log.positions.at(place.position_index));
     poses.map_from_robot.push_back(place.map_from_robot);
   }
   return part;
 }
 
-void add_logs(const MapArguments& arguments, const Log& log, const std::vector<PlacedPosition>& placed,
-              OutputSet& outputs) {
-  if (arguments.carmen_path.empty() && arguments.rawlog_path.empty()) return;
+void add_log(const std::string& to, LogFormat format, const LogSet& logs, std::size_t which,
+             const std::vector<PlacedPosition>& placed, OutputSet& outputs) {
   LogPoses poses;
-  const Log part = placed_log(log, placed, poses);
-  const auto add = [&](const std::string& to, LogFormat format) {
-    if (to.empty()) return;
-    outputs.add(to, [&](const std::string& path) { write_log(part, path, format, &poses); });
-  };
-  add(arguments.carmen_path, LogFormat::kCarmen);
-  add(arguments.rawlog_path, LogFormat::kRawlog);
+  const Log part = placed_log(logs, which, placed, poses);
+  outputs.add(to, [&](const std::string& path) { write_log(part, path, format, &poses); });
+}
+
+/// Calls `add(which log, path, its placed positions)` for each log, if `path` was given.
+template <class Add>
+void for_each_log(const std::string& path, const MapArguments& arguments, const LogSet& logs, const MapResult& result,
+                  const Add& add) {
+  if (path.empty()) return;
+  const std::vector<std::string> paths = per_log_paths(path, arguments.logs);
+  const std::vector<LogPart> parts = parts_of(logs.log);
+  for (std::size_t i = 0; i < paths.size(); ++i) add(i, paths[i], placed_of(result.placed(), parts.at(i)));
 }
 
 }  // namespace
 
-std::vector<std::string> output_paths(const MapArguments& arguments) {
-  std::vector<std::string> paths{arguments.map_path, ros_yaml_path(arguments.map_path)};
-  for (const std::string& path : {arguments.trajectory_path, arguments.motions_path, arguments.carmen_path,
-                                  arguments.rawlog_path, arguments.report_path, arguments.trace_path}) {
-    if (!path.empty()) paths.push_back(path);
+std::vector<std::pair<const char*, std::string>> per_log_outputs(const MapArguments& arguments) {
+  std::vector<std::pair<const char*, std::string>> given;
+  for (const auto& [option, path] :
+       {std::pair{"--trajectory", arguments.trajectory_path}, std::pair{"--motions", arguments.motions_path},
+        std::pair{"--carmen-out", arguments.carmen_path}, std::pair{"--rawlog-out", arguments.rawlog_path}}) {
+    if (!path.empty()) given.emplace_back(option, path);
   }
-  return paths;
+  return given;
 }
 
-void prepare_outputs(const MapArguments& arguments, const Log& log, const MapResult& result, OutputSet& outputs) {
+void check_output_paths(const MapArguments& arguments) {
+  std::vector<std::string> paths{arguments.map_path, ros_yaml_path(arguments.map_path)};
+  for (const std::string& path : {arguments.report_path, arguments.trace_path}) {
+    if (!path.empty()) paths.push_back(path);
+  }
+  for (const auto& [option, path] : per_log_outputs(arguments)) {
+    for (std::string& one : per_log_paths(path, arguments.logs)) paths.push_back(std::move(one));
+  }
+  for (const LogSource& log : arguments.logs) check_outputs(paths, log.path, arguments.force);
+  if (arguments.fragments_folder.empty()) return;
+  for (const LogSource& log : arguments.logs) paths.push_back(log.path);
+  check_fragments_folder(arguments.fragments_folder, paths, arguments.force);
+}
+
+void prepare_outputs(const MapArguments& arguments, const LogSet& logs, const MapResult& result, OutputSet& outputs) {
   const std::vector<PlacedPosition>& placed = result.placed();
-  set_interrupt_policy(OnInterrupt::kExitAtOnce);  // nothing is open yet, and a large map takes a while
-  const GridMap map = build_grid_map(log, placed, arguments.settings.mapping.returns, arguments.settings.grid);
-  set_interrupt_policy(OnInterrupt::kFinishStep);
-  add_map(arguments.map_path, map, arguments.settings.drawing.draw_path ? &placed : nullptr, outputs);
-  add_logs(arguments, log, placed, outputs);
-  if (!arguments.trajectory_path.empty()) outputs.add_text(arguments.trajectory_path, tum_trajectory(placed));
-  if (!arguments.motions_path.empty()) outputs.add_text(arguments.motions_path, motion_lines(motions_of(result)));
+  const MapSettings& settings = arguments.settings;
+  const GridMap map = build_grid_map(logs.log, placed, settings.mapping.returns, settings.grid);
+  add_map(arguments.map_path, map, settings.drawing.draw_path ? &placed : nullptr, outputs);
+  const auto for_each = [&](const std::string& path, const auto& add) {
+    for_each_log(path, arguments, logs, result, add);
+  };
+  for_each(arguments.carmen_path, [&](std::size_t which, const std::string& path, const auto& part) {
+    add_log(path, LogFormat::kCarmen, logs, which, part, outputs);
+  });
+  for_each(arguments.rawlog_path, [&](std::size_t which, const std::string& path, const auto& part) {
+    add_log(path, LogFormat::kRawlog, logs, which, part, outputs);
+  });
+  for_each(arguments.trajectory_path, [&](std::size_t, const std::string& path, const auto& part) {
+    outputs.add_text(path, tum_trajectory(part));
+  });
+  for_each(arguments.motions_path, [&](std::size_t, const std::string& path, const auto& part) {
+    outputs.add_text(path, motion_lines(motions_of(result, part)));
+  });
+  if (!arguments.fragments_folder.empty()) add_fragments(arguments, logs, result, outputs);
 }
 
 }  // namespace shapemap::cli

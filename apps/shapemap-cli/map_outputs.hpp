@@ -2,19 +2,23 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "arguments.hpp"
+#include "log_set.hpp"
 #include "output_set.hpp"
-#include "shapemap/io/report.hpp"
 
 namespace shapemap::cli {
 
-/// All files that a run with `arguments` writes.
-std::vector<std::string> output_paths(const MapArguments& arguments);
+/// What was asked for that each log gets for itself: the option and its path.
+std::vector<std::pair<const char*, std::string>> per_log_outputs(const MapArguments& arguments);
+
+/// Whether all that a run with `arguments` writes could be written. Throws ConfigError and OutputError.
+void check_output_paths(const MapArguments& arguments);
 
 /// Draws the map and prepares the files that were asked for, except the trace, which is
 /// written while mapping, and the report, which is made last.
-void prepare_outputs(const MapArguments& arguments, const Log& log, const MapResult& result, OutputSet& outputs);
+void prepare_outputs(const MapArguments& arguments, const LogSet& logs, const MapResult& result, OutputSet& outputs);
 
 }  // namespace shapemap::cli

@@ -20,8 +20,9 @@ SURE = 0.95  # the mapper's own threshold for `ok`
 
 @dataclass(frozen=True)
 class PairOutcome:
-    """Position `index` in the frame of the one before it. The estimate is that of the report, also of pairs outside of
-    the map, and NaN where there is none; probability NaN and covariance None where the report does not say them."""
+    """Position `index` in the frame of its reference: the one before it, unless the mapper aligned it to another. The
+    estimate is that of the report, also of pairs outside of the map, and NaN where there is none; probability NaN and
+    covariance None where the report does not say them."""
 
     index: int
     overlap: float
@@ -32,6 +33,7 @@ class PairOutcome:
     ref_from_query: Array
     true_ref_from_query: Array
     ref_heading_rad: float
+    reference: int | None = None  # None: index - 1
 
     @property
     def error(self) -> Array:
@@ -109,7 +111,7 @@ def estimated_pose(alignment: Mapping[str, Any], from_path: Array) -> Array:
 
 
 def pair_outcomes(simulation: Simulation, report: Mapping[str, Any], trajectory: str) -> list[PairOutcome]:
-    """One outcome for each consecutive pair of the run."""
+    """One outcome for each position but the first: the pair that it makes with its reference."""
     placed, entries = parse_tum(trajectory), {entry["index"]: entry for entry in report["positions"]}
     overlaps, truth = consecutive_overlaps(simulation), simulation.drive.map_from_robot
     nowhere = np.full(3, np.nan)
@@ -119,6 +121,8 @@ def pair_outcomes(simulation: Simulation, report: Mapping[str, Any], trajectory:
         entry = entries.get(k, {})
         alignment = entry.get("alignment") or {}
         probability = alignment.get("probability")
+        reference = alignment.get("reference")
+        r = k - 1 if reference is None else int(reference)
         outcomes.append(
             PairOutcome(
                 index=k,
@@ -127,9 +131,10 @@ def pair_outcomes(simulation: Simulation, report: Mapping[str, Any], trajectory:
                 reason=entry.get("reason", "not in the report"),
                 probability=float("nan") if probability is None else float(probability),
                 covariance=covariance_from(alignment.get("covariance")),
-                ref_from_query=estimated_pose(alignment, compose(inverse(poses[k - 1]), poses[k])),
-                true_ref_from_query=compose(inverse(truth[k - 1]), truth[k]),
-                ref_heading_rad=float(truth[k - 1][2]),
+                ref_from_query=estimated_pose(alignment, compose(inverse(poses[r]), poses[k])),
+                true_ref_from_query=compose(inverse(truth[r]), truth[k]),
+                ref_heading_rad=float(truth[r][2]),
+                reference=r,
             )
         )
     return outcomes

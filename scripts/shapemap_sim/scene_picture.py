@@ -27,7 +27,8 @@ def estimated_poses(simulation: Simulation, outcomes: list[PairOutcome]) -> Arra
     """`[p, 3]` in the map, chained from the true first pose; NaN after a position without a place."""
     poses = [simulation.drive.map_from_robot[0]]
     for pair in outcomes:
-        poses.append(compose(poses[-1], pair.ref_from_query))
+        reference = pair.index - 1 if pair.reference is None else pair.reference
+        poses.append(compose(poses[reference], pair.ref_from_query))
     return np.array(poses)
 
 

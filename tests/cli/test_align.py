@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Aligning single pairs: what is written, which pairs are taken, and what is refused."""
+
 import json
 import math
 import os
@@ -21,10 +22,9 @@ def relative(a, b):
 
 
 def is_near(pose, truth):
-    return (
-        math.hypot(pose[0] - truth[0], pose[1] - truth[1]) < 0.05
-        and abs(math.remainder(pose[2] - truth[2], 2 * math.pi)) < math.radians(1)
-    )
+    return math.hypot(pose[0] - truth[0], pose[1] - truth[1]) < 0.05 and abs(
+        math.remainder(pose[2] - truth[2], 2 * math.pi)
+    ) < math.radians(1)
 
 
 def objects(text):
@@ -177,7 +177,7 @@ def test_options_files_of_both_commands_fit(run, align, tmp_path, room_log):
         ["room.log", "--gap", "1", "--out", "room.log", "--force"],
         ["room.log", "--pairs", "pairs.txt", "--out", "pairs.txt", "--force"],
         ["room.log", "--gap", "1", "--out", "p.jsonl", "--from", "bag"],
-        ["room.log", "--gap", "1", "--out", "p.jsonl", "--threads", "0"],
+        ["room.log", "--gap", "1", "--out", "p.jsonl", "--threads", "-1"],
         ["room.log", "--gap", "1", "--out", "p.jsonl", "--lcs-band", "3"],
     ],
 )

@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ctrl-C at any moment: code 130, soon, and no trace of the run."""
+"""Ctrl-C at any moment: code 130, soon, with the map so far; a second one leaves no trace of the run."""
+
+import json
 import os
+import re
 import signal
 import subprocess
 import time
 
 import pytest
 import synthetic_log
+
+OUTPUTS = ["map.json", "map.png", "map.tum", "map.yaml", "out.rawlog", "trace.jsonl"]
 
 
 @pytest.fixture
@@ -16,39 +21,69 @@ def long_log(tmp_path, room_text):
     return path
 
 
-def start(cli_path, folder, terminal=None):
+def start(cli_path, folder, terminal=None, *more):
     arguments = [cli_path, "long.log", "--out", "map.png", "--trajectory", "map.tum", "--rawlog-out", "out.rawlog"]
-    arguments += ["--trace", "trace.jsonl"]
+    arguments += ["--trace", "trace.jsonl", "--report", "map.json", *more]
     return subprocess.Popen(arguments, cwd=folder, stderr=terminal if terminal is not None else subprocess.PIPE)
 
 
-def wait_for_progress(main):
-    """Reads the terminal until the bar shows that some positions are done."""
+def read_until(main, text):
     seen = b""
-    while b"/4800" not in seen:
+    while text not in seen:
         seen += os.read(main, 4096)
     return seen
 
 
-@pytest.mark.parametrize("which", [signal.SIGINT, signal.SIGTERM])
-def test_interrupt_while_mapping(cli_path, long_log, tmp_path, files_of, which):
+def start_and_wait_for_progress(cli_path, folder, *more):
+    """The process, and the terminal that shows that some positions are done."""
     main, terminal = os.openpty()
-    process = start(cli_path, tmp_path, terminal)
+    process = start(cli_path, folder, terminal, *more)
     os.close(terminal)
-    wait_for_progress(main)
+    read_until(main, b"/4800")
+    return process, main
+
+
+@pytest.mark.parametrize("which", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("method", ["robust", "paper"])
+def test_an_interrupt_gives_the_map_so_far(cli_path, long_log, tmp_path, files_of, which, method):
+    process, main = start_and_wait_for_progress(cli_path, tmp_path, "--method", method)
     begin = time.monotonic()
     process.send_signal(which)
     assert process.wait(30) == 130
-    assert time.monotonic() - begin < 5.0
-    seen = b""
-    while b"nothing written" not in seen:
-        seen += os.read(main, 4096)
+    assert time.monotonic() - begin < 10.0
+    seen = read_until(main, b"; map: map.png").decode()
     os.close(main)
-    assert b"shapemap-cli: interrupted; nothing written" in seen
-    assert files_of() == ["long.log"]
+    found = re.search(r"interrupted after (\d+) of 4800 positions; writing the map so far", seen)
+    assert found, seen
+    num_mapped = int(found[1])
+    assert 0 < num_mapped < 4800
+    assert f"placed {num_mapped} of {num_mapped} positions" in seen
+    assert "nothing written\n" not in seen
+    assert files_of() == ["long.log", *OUTPUTS]
+    report = json.loads((tmp_path / "map.json").read_text())
+    assert report["interrupted"] is True
+    assert report["num_placed"] == report["num_positions"] == num_mapped
+    assert report["logs"][0]["num_positions"] == 4800
+    assert len((tmp_path / "map.tum").read_text().splitlines()) == num_mapped
+    assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
+    last = (tmp_path / "trace.jsonl").read_text().splitlines()[-1]
+    assert json.loads(last)["num_placed"] == num_mapped
 
 
-@pytest.mark.parametrize("delay_s", [0.05, 0.1, 0.2, 0.4])
+def test_a_quiet_run_tells_the_interrupt_and_no_more(cli_path, long_log, tmp_path, files_of):
+    process = start(cli_path, tmp_path, None, "--quiet")
+    while len(files_of()) < 2:  # the trace grows while positions are mapped
+        assert process.poll() is None
+        time.sleep(0.02)
+    time.sleep(1.5)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert re.fullmatch(rb"shapemap-cli: interrupted after \d+ of 4800 positions; writing [^\n]*\n", errors), errors
+    assert files_of() == ["long.log", *OUTPUTS]
+
+
+@pytest.mark.parametrize("delay_s", [0.0, 0.05, 0.1, 0.2, 0.4])
 def test_interrupt_at_any_early_moment(cli_path, long_log, tmp_path, files_of, delay_s):
     process = start(cli_path, tmp_path)
     time.sleep(delay_s)
@@ -56,12 +91,55 @@ def test_interrupt_at_any_early_moment(cli_path, long_log, tmp_path, files_of, d
     _, errors = process.communicate(timeout=30)
     # Before the program has started its handlers the system's own one ends it.
     assert process.returncode in (130, -signal.SIGINT)
+    if b"writing the map so far" in errors:
+        assert files_of() == ["long.log", *OUTPUTS]
+        return
     if process.returncode == 130:
         assert errors == b"shapemap-cli: interrupted; nothing written\n"
     assert files_of() == ["long.log"]
 
 
-def test_interrupt_while_writing(cli_path, tmp_path, files_of):
+def test_a_second_interrupt_leaves_files_untouched(cli_path, long_log, tmp_path, files_of):
+    """The first one finds the trajectory's pipe without a reader, and the run waits."""
+    os.mkfifo(tmp_path / "pipe")
+    for name in ("map.png", "map.yaml", "trace.jsonl"):
+        (tmp_path / name).write_text("mine")
+    before = files_of()
+    main, terminal = os.openpty()
+    arguments = [cli_path, "long.log", "--out", "map.png", "--trajectory", "pipe", "--trace", "trace.jsonl", "--force"]
+    arguments += ["--fragments", "apart"]
+    process = subprocess.Popen(arguments, cwd=tmp_path, stderr=terminal)
+    os.close(terminal)
+    read_until(main, b"/4800")
+    process.send_signal(signal.SIGINT)
+    read_until(main, b"writing the map so far")
+    time.sleep(1.0)
+    assert process.poll() is None
+    assert len(files_of()) > len(before), "temporary files are there"
+    assert (tmp_path / "apart").is_dir()
+    begin = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    assert process.wait(30) == 130
+    assert time.monotonic() - begin < 2.0
+    read_until(main, b"interrupted; nothing written")
+    os.close(main)
+    assert files_of() == before
+    assert not (tmp_path / "apart").exists()
+    assert [(tmp_path / name).read_text() for name in ("map.png", "map.yaml", "trace.jsonl")] == ["mine"] * 3
+
+
+def test_two_interrupts_at_once_while_mapping(cli_path, long_log, tmp_path, files_of):
+    process, main = start_and_wait_for_progress(cli_path, tmp_path)
+    process.send_signal(signal.SIGINT)
+    process.send_signal(signal.SIGTERM)
+    begin = time.monotonic()
+    assert process.wait(30) == 130
+    assert time.monotonic() - begin < 2.0
+    os.close(main)
+    assert files_of() == ["long.log"]
+
+
+def test_interrupt_while_waiting_for_a_reader(cli_path, tmp_path, files_of):
     """The trajectory goes to a pipe that nobody reads yet: the other outputs wait in temporary files."""
     (tmp_path / "room.log").write_text(synthetic_log.carmen_log(3))
     os.mkfifo(tmp_path / "pipe")
@@ -91,8 +169,9 @@ def test_interrupt_at_any_moment_gives_all_or_nothing(cli_path, tmp_path, files_
         process = subprocess.Popen(arguments, cwd=tmp_path, stderr=subprocess.PIPE)
         time.sleep(duration_s * (0.4 + 0.05 * i))
         process.send_signal(signal.SIGINT)
-        process.communicate(timeout=30)
-        if process.returncode == 0:
+        _, errors = process.communicate(timeout=30)
+        if process.returncode == 0 or b"; map: map.png" in errors:
+            assert process.returncode == 0 or b" interrupted" in errors
             assert files_of() == [*outputs, "room.log"]
         else:
             assert process.returncode in (130, -signal.SIGINT)

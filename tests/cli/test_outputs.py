@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a run writes, and that it comes whole or not at all."""
+
 import json
 import math
 import os
@@ -36,7 +37,8 @@ def test_a_run_maps_the_room_and_writes_all_that_is_asked_for(run, room_log, tmp
     )
     assert result.returncode == 0, result.stderr
     assert result.stdout == ""
-    assert "placed 12 of 12 positions (1 fragment)" in result.stderr
+    num_loops = "1 loop" if method == "robust" else "0 loops"
+    assert f"placed 12 of 12 positions (12 keyframes, {num_loops}, 1 fragment)" in result.stderr
     assert "map.png" in result.stderr
     poses = read_tum((tmp_path / "map.tum").read_text())
     truth = synthetic_log.path(12)
@@ -53,7 +55,7 @@ def test_a_run_maps_the_room_and_writes_all_that_is_asked_for(run, room_log, tmp
         assert abs(x - pose["x_m"]) < 1e-5
         assert abs(y - pose["y_m"]) < 1e-5
         assert abs(math.degrees(theta) - pose["theta_deg"]) < 1e-3
-    assert "image: \"map.png\"" in (tmp_path / "map.yaml").read_text()
+    assert 'image: "map.png"' in (tmp_path / "map.yaml").read_text()
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
     assert (tmp_path / "out.rawlog.gz").read_bytes().startswith(b"\x1f\x8b")
 
@@ -90,9 +92,9 @@ def test_unplaced_positions_are_listed_and_left_out(run, tmp_path, method, num_p
 
 
 def test_alignments_in_doubt_are_counted_and_listed(run, room_log, tmp_path):
-    """No alignment is ever certain, so that a call for certainty leaves all of them in doubt."""
+    """No alignment is ever certain, so that a call for certainty leaves all of them in doubt, if no loop helps."""
     (tmp_path / "long.log").write_text(room_log.read_text() * 3)
-    doubtful = ("long.log", "--sure-probability", 1)
+    doubtful = ("long.log", "--sure-probability", 1, "--no-close-loops")
     result = run(*doubtful, "--out", "map.png", "--report", "r.json")
     assert result.returncode == 0, result.stderr
     assert "35 of 35 alignments are uncertain: 0 with too little overlap, 35 ambiguous, 0 degenerate" in result.stderr
@@ -107,6 +109,49 @@ def test_alignments_in_doubt_are_counted_and_listed(run, room_log, tmp_path):
     assert run(*doubtful, "--out", "quiet.png", "--quiet").stderr == ""
     sure = run("room.log", "--sure-probability", 0, "--max-deviation-m", 10, "--out", "sure.png").stderr
     assert "uncertain" not in sure
+
+
+def test_what_loops_hold_is_not_uncertain(run, room_log, tmp_path):
+    (tmp_path / "long.log").write_text(room_log.read_text() * 3)
+    result = run("long.log", "--sure-probability", 1, "--out", "map.png", "--report", "r.json")
+    assert result.returncode == 0, result.stderr
+    report = json.loads((tmp_path / "r.json").read_text())
+    doubtful = [p for p in report["positions"][1:] if p["alignment"]["status"] != "ok"]
+    held = [p for p in doubtful if p["held_by_loops"]]
+    assert len(doubtful) == 35
+    assert len(held) > 20, "the robot comes by twice"
+    uncertain = 35 - len(held)
+    assert f"{uncertain} of 35 alignments are uncertain" in result.stderr
+    assert f"; {len(held)} more would be, but loops hold these positions" in result.stderr
+    listed = [line for line in result.stderr.splitlines() if " ambiguous: the pose" in line]
+    assert [
+        f"position {p['index']} " in line
+        for p, line in zip((p for p in doubtful if not p["held_by_loops"]), listed, strict=True)
+    ] == [True] * uncertain
+
+
+def test_the_report_tells_loops_keyframes_and_stages(run, room_log, tmp_path):
+    (tmp_path / "twice.log").write_text(room_log.read_text() * 2)
+    still = synthetic_log.flaser(synthetic_log.scan(synthetic_log.path(1)[0]), 0.5)
+    (tmp_path / "twice.log").write_text(still + (tmp_path / "twice.log").read_text())
+    result = run("twice.log", "--out", "map.png", "--report", "r.json", "--verbose")
+    assert result.returncode == 0, result.stderr
+    report = json.loads((tmp_path / "r.json").read_text())
+    positions = report["positions"]
+    assert not report["interrupted"]
+    assert report["loops"]
+    for loop in report["loops"]:
+        assert 0 <= loop["a"] < loop["b"] < 25
+        assert loop["strength"] > 0
+        a, b = (positions[loop[name]]["map_from_robot"] for name in "ab")
+        in_map = relative(*((p["x_m"], p["y_m"], math.radians(p["theta_deg"])) for p in (a, b)))
+        assert math.hypot(in_map[0] - loop["a_from_b"]["x_m"], in_map[1] - loop["a_from_b"]["y_m"]) < 0.1
+    assert [p["is_keyframe"] for p in positions[:3]] == [True, False, True], "the robot stood still at first"
+    assert positions[2]["alignment"]["reference"] == 0
+    assert report["seconds"]["loops"] > 0
+    keyframes = sum(p["is_keyframe"] for p in positions)
+    assert f"({keyframes} keyframes, {len(report['loops'])} loop" in result.stderr
+    assert ", loops " in result.stderr
 
 
 def test_selection_keeps_count_in_the_whole_log(run, room_log, tmp_path):
@@ -143,6 +188,7 @@ def test_a_terminal_gets_a_progress_bar(cli_path, room_log, tmp_path):
         seen += chunk
     os.close(main)
     assert process.wait(60) == 0
+    assert b"chain [" in seen and b"loops [" in seen and b"whole map " in seen
     assert b"12/12" in seen
     assert b"positions/s" in seen
     assert b"ETA" in seen

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is typed: help, flags and the options file."""
+
 import re
 import subprocess
 import tomllib
@@ -59,12 +60,13 @@ def test_version_names_what_it_is_built_on(run):
         ["room.log", "--out", "map"],
         ["room.log", "--out", ".png"],
         ["room.log", "--out", "folder/.png"],
-        ["room.log", "more.log", "--out", "map.png"],
+        ["room.log", "./room.log", "--out", "map.png"],
         ["room.log", "--carmen", "room.log", "--out", "map.png"],
+        ["[room.log]", "--out", "map.png"],
         ["room.log", "--demo", "--out", "map.png"],
         ["room.log", "--out", "map.png", "--no-such-option"],
         ["room.log", "--out", "map.png", "--method", "guess"],
-        ["room.log", "--out", "map.png", "--threads", "0"],
+        ["room.log", "--out", "map.png", "--threads", "-1"],
         ["room.log", "--out", "map.png", "--threads", "two"],
         ["room.log", "--out", "map.png", "--threads", "1.5"],
         ["room.log", "--out", "map.png", "--resolution-m", "nan"],

@@ -40,7 +40,9 @@ Json ranked_json(const RankedPose& ranked) {
           {"partners", ranked.partners}};
 }
 
-bool was_aligned(const PositionResult& position) { return !position.starts_fragment || !position.reason.empty(); }
+bool was_aligned(const PositionResult& position) {
+  return position.alignment.status != AlignStatus::kNoShape || !position.reason.empty();
+}
 
 double shown(double stored, double unit) {
   char text[32];

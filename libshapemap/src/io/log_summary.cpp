@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "shapemap/io/log_file.hpp"
 #include "shapemap/scan/returns.hpp"
@@ -37,19 +38,21 @@ void add(const SubScan& scan, LogSummary::Sensor& sensor, Count& count) {
 
 }  // namespace
 
-LogSummary summarise(const Log& log) {
+LogSummary summarise(const Log& log) { return summarise(log, 0, log.positions.size()); }
+
+LogSummary summarise(const Log& log, std::size_t first, std::size_t last) {
   LogSummary summary;
   summary.format = log.format;
-  summary.num_positions = log.positions.size();
-  if (!log.positions.empty()) {
-    const auto [first, last] =
-        std::minmax_element(log.positions.begin(), log.positions.end(),
-                            [](const Position& a, const Position& b) { return a.timestamp_s < b.timestamp_s; });
-    summary.duration_s = last->timestamp_s - first->timestamp_s;
-  }
+  summary.num_positions = last - first;
+  if (first == last) return summary;
+  const auto begin = log.positions.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto end = log.positions.begin() + static_cast<std::ptrdiff_t>(last);
+  const auto [earliest, latest] = std::minmax_element(
+      begin, end, [](const Position& a, const Position& b) { return a.timestamp_s < b.timestamp_s; });
+  summary.duration_s = latest->timestamp_s - earliest->timestamp_s;
   std::vector<Count> counts;
-  for (const Position& position : log.positions) {
-    for (const SubScan& scan : position.sub_scans) {
+  for (auto position = begin; position != end; ++position) {
+    for (const SubScan& scan : position->sub_scans) {
       const auto known = std::find_if(summary.sensors.begin(), summary.sensors.end(),
                                       [&](const auto& sensor) { return sensor.label == scan.sensor_label; });
       const auto index = static_cast<std::size_t>(known - summary.sensors.begin());

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/io/report.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "json_parts.hpp"
+#include "references.hpp"
+#include "shapemap/scan/joined_logs.hpp"
 
 namespace shapemap {
 namespace {
@@ -23,6 +26,12 @@ Json poses_json(const std::vector<Pose2>& poses) {
   return list;
 }
 
+std::size_t num_inside(const std::vector<PlacedPosition>& placed, const LogPart& part) {
+  return static_cast<std::size_t>(std::count_if(placed.begin(), placed.end(), [&](const PlacedPosition& place) {
+    return part.first <= place.position_index && place.position_index < part.last;
+  }));
+}
+
 Json options_json(const RunReport& report) {
   Json all = Json::object();
   add_options(report.reading, all);
@@ -32,8 +41,8 @@ Json options_json(const RunReport& report) {
   return all;
 }
 
-Json log_json(const RunReport& report) {
-  const LogSummary summary = summarise(report.log);
+Json log_json(const RunReport& report, std::size_t which, const LogPart& part) {
+  const LogSummary summary = summarise(report.log, part.first, part.last);
   Json sensors = Json::array();
   for (const LogSummary::Sensor& sensor : summary.sensors) {
     sensors.push_back({{"label", sensor.label},
@@ -45,11 +54,20 @@ Json log_json(const RunReport& report) {
                        {"longest_return_m", sensor.longest_return_m},
                        {"return_ratio", sensor.return_ratio}});
   }
-  return {{"path", report.log_path},
-          {"format", summary.format},
+  const LogFile& file = report.logs.at(which);
+  return {{"path", file.path},
+          {"format", file.format},
+          {"first_index", part.first},
           {"num_positions", summary.num_positions},
+          {"num_placed", num_inside(report.result.placed(), part)},
           {"duration_s", summary.duration_s},
           {"sensors", sensors}};
+}
+
+Json logs_json(const RunReport& report) {
+  Json list = Json::array();
+  for (const LogPart& part : parts_of(report.log)) list.push_back(log_json(report, list.size(), part));
+  return list;
 }
 
 Json ranked_json(const std::vector<RankedPose>& ranked) {
@@ -63,11 +81,12 @@ Json ranked_json(const std::vector<RankedPose>& ranked) {
   return list;
 }
 
-Json alignment_json(const PositionResult& position) {
+Json alignment_json(const PositionResult& position, std::size_t reference) {
   if (!was_aligned(position)) return nullptr;
   const Alignment& alignment = position.alignment;
   const auto if_any = [&](const Pose2& pose) { return alignment.has_pose() ? pose_json(pose) : Json(nullptr); };
   return {{"status", enum_name(alignment.status)},
+          {"reference", reference == kNoReference ? Json(nullptr) : Json(reference)},
           {"ref_from_query", if_any(alignment.ref_from_query)},
           {"shape_ref_from_query", if_any(alignment.shape_ref_from_query)},
           {"icp_ref_from_query", if_any(alignment.icp_ref_from_query)},
@@ -83,24 +102,30 @@ Json alignment_json(const PositionResult& position) {
           {"query_from_sub_scan", poses_json(alignment.query_from_sub_scan)}};
 }
 
-Json position_json(const PositionResult& position, const RunReport& report) {
+Json position_json(const PositionResult& position, std::size_t reference, const RunReport& report) {
+  const std::size_t log = part_with(report.log, position.position_index);
+  const std::size_t first = log == 0 ? 0 : report.log.starts[log - 1];
   return {{"index", position.position_index},
-          {"index_in_whole_log", index_in_whole_log(position.position_index, report.selection)},
+          {"log", log},
+          {"index_in_whole_log", index_in_whole_log(position.position_index - first, report.selection)},
           {"timestamp_s", position.timestamp_s},
           {"fragment", position.fragment},
           {"starts_fragment", position.starts_fragment},
+          {"is_keyframe", position.fragment >= 0 && position.is_keyframe},
+          {"held_by_loops", position.held_by_loops},
           {"reason", position.reason},
-          {"alignment", alignment_json(position)},
+          {"alignment", alignment_json(position, reference)},
           {"why_not_in_map", report.result.why_not_in_map(position)},
           {"map_from_robot", nullptr}};
 }
 
 Json positions_json(const RunReport& report) {
   Json list = Json::array();
+  const std::vector<std::size_t> references = references_of(report.result);
   std::vector<std::size_t> entry_of(report.log.positions.size(), 0);
   for (const PositionResult& position : report.result.positions) {
     entry_of.at(position.position_index) = list.size();
-    list.push_back(position_json(position, report));
+    list.push_back(position_json(position, references[list.size()], report));
   }
   for (const PlacedPosition& place : report.result.placed()) {
     list.at(entry_of.at(place.position_index))["map_from_robot"] = pose_json(place.map_from_robot);
@@ -108,7 +133,19 @@ Json positions_json(const RunReport& report) {
   return list;
 }
 
-Json fragments_json(const MapResult& result) {
+/// How many of the positions each log has.
+Json per_log_json(const Log& log, const std::vector<PlacedPosition>& positions) {
+  Json list = Json::array();
+  const std::vector<LogPart> parts = parts_of(log);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::size_t count = num_inside(positions, parts[i]);
+    if (count > 0) list.push_back({{"log", i}, {"num_positions", count}});
+  }
+  return list;
+}
+
+Json fragments_json(const RunReport& report) {
+  const MapResult& result = report.result;
   Json list = Json::array();
   for (std::size_t i = 0; i < result.fragments.size(); ++i) {
     const std::vector<PlacedPosition>& positions = result.fragments[i].positions;
@@ -117,7 +154,19 @@ Json fragments_json(const MapResult& result) {
                     {"num_positions", positions.size()},
                     {"first_index", positions.front().position_index},
                     {"last_index", positions.back().position_index},
+                    {"logs", per_log_json(report.log, positions)},
                     {"is_map", static_cast<int>(i) == result.largest_fragment}});
+  }
+  return list;
+}
+
+Json loops_json(const MapResult& result) {
+  Json list = Json::array();
+  for (const ClosedLoop& loop : result.loops) {
+    list.push_back({{"a", loop.a},
+                    {"b", loop.b},
+                    {"a_from_b", pose_json(loop.a_from_b)},
+                    {"strength", number_json(loop.strength)}});
   }
   return list;
 }
@@ -127,9 +176,9 @@ Json timings_json(const RunReport& report) {
   const RunCosts& costs = report.costs;
   return {{"shape", times.shape_s}, {"align", times.align_s},
           {"icp", times.icp_s},     {"decoupled_icp", times.decoupled_icp_s},
-          {"read", costs.read_s},   {"map", costs.map_s},
-          {"write", costs.write_s}, {"wall", costs.wall_s},
-          {"cpu", costs.cpu_s}};
+          {"loops", times.loops_s}, {"read", costs.read_s},
+          {"map", costs.map_s},     {"write", costs.write_s},
+          {"wall", costs.wall_s},   {"cpu", costs.cpu_s}};
 }
 
 }  // namespace
@@ -138,13 +187,15 @@ std::string json_report(const RunReport& report) {
   Json versions = Json::object();
   for (const auto& [name, version] : component_versions()) versions[name] = version;
   const Json all = {{"format", "shapemap-report"},
-                    {"format_version", 1},
+                    {"format_version", 2},
                     {"versions", versions},
-                    {"log", log_json(report)},
+                    {"logs", logs_json(report)},
                     {"options", options_json(report)},
                     {"num_positions", report.result.positions.size()},
                     {"num_placed", report.result.placed().size()},
-                    {"fragments", fragments_json(report.result)},
+                    {"interrupted", report.result.interrupted},
+                    {"fragments", fragments_json(report)},
+                    {"loops", loops_json(report.result)},
                     {"positions", positions_json(report)},
                     {"warnings", report.warnings},
                     {"seconds", timings_json(report)},

@@ -2,6 +2,7 @@
 #include "trace_json.hpp"
 
 #include "shapemap/core/version.hpp"
+#include "shapemap/scan/joined_logs.hpp"
 
 namespace shapemap {
 namespace {
@@ -108,11 +109,16 @@ Json run_json(const TracedRun& run) {
   add_options(run.selection, options);
   MappingOptions::groups(run.mapping, [&](const char*, const auto& group) { add_options(group, options); });
   options.erase("threads");  // part of no result
+  Json logs = Json::array();
+  for (const LogPart& part : parts_of(run.log)) {
+    logs.push_back({{"path", run.log_paths.at(logs.size())}, {"first_index", part.first}});
+  }
   return {{"record", "run"},
           {"format", "shapemap-trace"},
           {"format_version", 1},
           {"shapemap", kVersion},
-          {"log", run.log_path},
+          {"log", run.log_paths.at(0)},
+          {"logs", logs},
           {"log_format", run.log.format},
           {"num_positions", run.log.positions.size()},
           {"histogram_scale", kHistogramScale},
@@ -121,6 +127,8 @@ Json run_json(const TracedRun& run) {
 
 Json position_json(const TracedRun& run, std::size_t position_index, const std::vector<ShapePoint>& points) {
   const Position& position = run.log.positions.at(position_index);
+  const std::size_t log = part_with(run.log, position_index);
+  const std::size_t first = log == 0 ? 0 : run.log.starts[log - 1];
   Json sub_scans = Json::array();
   for (std::size_t s = 0; s < position.sub_scans.size(); ++s) {
     sub_scans.push_back(polylines_json(position.sub_scans[s], static_cast<int>(s), run.mapping));
@@ -131,7 +139,8 @@ Json position_json(const TracedRun& run, std::size_t position_index, const std::
   }
   Json all = {{"record", "position"},
               {"index", position_index},
-              {"index_in_whole_log", index_in_whole_log(position_index, run.selection)},
+              {"log", log},
+              {"index_in_whole_log", index_in_whole_log(position_index - first, run.selection)},
               {"timestamp_s", number_json(position.timestamp_s)},
               {"sub_scans", sub_scans},
               {"points", shape}};

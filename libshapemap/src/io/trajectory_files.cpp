@@ -2,10 +2,12 @@
 #include "shapemap/io/trajectory_files.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "references.hpp"
 #include "shapemap/core/errors.hpp"
 #include "text.hpp"
 
@@ -15,6 +17,9 @@ namespace {
 constexpr std::array<const char*, 8> kTumNames{"the timestamp", "x", "y", "z", "qx", "qy", "qz", "qw"};
 constexpr std::array<const char*, 10> kMotionNames{
     "the timestamp", "x_m", "y_m", "theta_rad", "xx", "xy", "xt", "yy", "yt", "tt"};
+
+/// Variances of a motion that no alignment holds but the rest of the map: 1 m and 1 rad.
+const Eigen::Vector3d kUnheld = Eigen::Vector3d::Ones();
 
 /// Calls `take(lines, values)` for each line that holds more than a remark.
 template <std::size_t kCount, class Take>
@@ -43,6 +48,27 @@ bool is_covariance(const Eigen::Matrix3d& matrix) {
   return values.allFinite() && values.minCoeff() >= -1e-9 * std::max(1e-9, values.maxCoeff());
 }
 
+/// Of a motion to `position` from the one before it. That is what `position` is aligned to, or else its `sibling`: both
+/// are aligned to the same keyframe, and then both alignments err.
+Eigen::Matrix3d covariance_of(const Pose2& motion, const PositionResult& position, const PositionResult* sibling) {
+  const Alignment& alignment = position.alignment;
+  if (!alignment.covariance.allFinite()) {
+    if (alignment.has_pose()) {
+      throw ConfigError("motions need covariances, which only the robust method gives; use --method robust");
+    }
+    return kUnheld.asDiagonal();
+  }
+  if (!sibling || sibling->alignment.ranked.empty()) return alignment.covariance;
+  const Eigen::Rotation2Dd turn(-sibling->alignment.ranked.front().ref_from_query.theta_rad);
+  Eigen::Matrix3d by_position = Eigen::Matrix3d::Identity();
+  by_position.topLeftCorner<2, 2>() = turn.toRotationMatrix();
+  Eigen::Matrix3d by_sibling = -by_position;
+  by_sibling.topRightCorner<2, 1>() = Eigen::Vector2d(motion.y_m, -motion.x_m);
+  const Eigen::Matrix3d sum = by_position * alignment.covariance * by_position.transpose() +
+                              by_sibling * sibling->alignment.covariance * by_sibling.transpose();
+  return 0.5 * (sum + sum.transpose());
+}
+
 }  // namespace
 
 std::vector<TimedPose> read_tum_trajectory(const std::string& path) {
@@ -57,17 +83,19 @@ std::vector<TimedPose> read_tum_trajectory(const std::string& path) {
   return poses;
 }
 
-std::vector<TimedMotion> motions_of(const MapResult& result) {
-  const std::vector<PlacedPosition>& placed = result.placed();
+std::vector<TimedMotion> motions_of(const MapResult& result) { return motions_of(result, result.placed()); }
+
+std::vector<TimedMotion> motions_of(const MapResult& result, const std::vector<PlacedPosition>& placed) {
+  const std::vector<std::size_t> references = references_of(result);
   std::vector<TimedMotion> motions;
   if (!placed.empty()) motions.push_back({placed[0].timestamp_s, {}, Eigen::Matrix3d::Zero(), ""});
   for (std::size_t i = 1; i < placed.size(); ++i) {
-    const Eigen::Matrix3d& covariance = result.positions.at(placed[i].position_index).alignment.covariance;
-    if (!covariance.allFinite()) {
-      throw ConfigError("motions need covariances, which only the robust method gives; use --method robust");
-    }
-    motions.push_back(
-        {placed[i].timestamp_s, inverse(placed[i - 1].map_from_robot) * placed[i].map_from_robot, covariance, ""});
+    const Pose2 motion = inverse(placed[i - 1].map_from_robot) * placed[i].map_from_robot;
+    const std::size_t before = placed[i - 1].position_index;
+    const std::size_t here = placed[i].position_index;
+    const bool share_keyframe = references.at(here) == references.at(before) && references[here] != kNoReference;
+    const PositionResult* sibling = share_keyframe ? &result.positions[before] : nullptr;
+    motions.push_back({placed[i].timestamp_s, motion, covariance_of(motion, result.positions[here], sibling), ""});
   }
   return motions;
 }

@@ -77,6 +77,7 @@ void find_parts(const KeyframeChain& chain, const std::vector<PoseConstraint>& l
 std::vector<LoopCluster> loop_candidates(const NodeViews& views, const std::vector<ChainLink>& links,
                                          const std::vector<Pose2>& map_from_keyframe, const MappingOptions& options,
                                          RunObserver& observer) {
+  observer.on_stage("loops");
   std::vector<LoopHypothesis> hypotheses =
       likely_loops(views, options.robust.search, options.loop_search, options.chain.threads, observer);
   std::vector<std::size_t> piece(views.size(), 0);
@@ -85,6 +86,7 @@ std::vector<LoopCluster> loop_candidates(const NodeViews& views, const std::vect
     piece[i + 1] = piece[i] + (links[i].exists() && links[i].probability >= kTrusted ? 0 : 1);
     if (links[i].exists() && links[i].probability < options.loop_search.bridge_below) doubtful.push_back(i);
   }
+  observer.on_stage("doubts");
   const std::vector<LoopHypothesis> around =
       bridges(views, doubtful, options.robust.search, options.chain.threads, observer);
   hypotheses.insert(hypotheses.end(), around.begin(), around.end());
@@ -132,6 +134,7 @@ KeyframeMap map_with_loops(const KeyframeChain& chain, const MappingOptions& opt
   for (const KeyframeLink& link : chain.links) links.push_back(chain_link(link, options.robust.confidence));
 
   const std::vector<LoopCluster> clusters = loop_candidates(views, links, map.map_from_keyframe, options, observer);
+  observer.on_stage("whole map");
   const LoopSolution solution = close_loops(views, links, clusters, options.robust.search.visibility,
                                             options.loop_closing, options.chain.threads, observer);
   for (std::size_t i = 0; i < links.size(); ++i) {

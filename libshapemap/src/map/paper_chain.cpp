@@ -115,6 +115,7 @@ class PaperChain {
 void chain_by_paper(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
                     MapResult& result) {
   PaperChain chain(options, observer, sink);
+  observer.on_stage("chain");
   for (std::size_t i = 0; i < log.positions.size(); ++i) {
     if (!observer.keep_going()) throw Interrupted();
     chain.add(i, log.positions[i], result);

@@ -36,6 +36,7 @@ class RobustChain {
       : log_(log), options_(options), observer_(observer), sink_(sink), result_(result), tracker_(options) {}
 
   KeyframeChain run() {
+    observer_.on_stage("chain");
     for (std::size_t first = 0; first < log_.positions.size() && observer_.keep_going(); first += kBlock) {
       const std::size_t last = std::min(first + kBlock, log_.positions.size());
       const std::size_t first_new = chain_.keyframes.size();

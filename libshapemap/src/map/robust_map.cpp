@@ -9,6 +9,7 @@
 #include "shapemap/align/robust_align.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/graph/loop_closing.hpp"
+#include "shapemap/scan/joined_logs.hpp"
 
 namespace shapemap {
 namespace {
@@ -43,6 +44,9 @@ class Placing {
 
   /// What the alignment to the keyframe before says, now that the whole map has.
   void judge(std::size_t link, PositionResult& outcome) const {
+    outcome.held_by_loops = map_.held_by_loops[link];
+    const std::size_t before = chain_.keyframes[link].position_index;
+    if (part_with(log_, before) != part_with(log_, outcome.position_index)) return;  // there is nothing to align to
     const std::vector<PoseHypothesis>& hypotheses = chain_.links[link].hypotheses;
     const Choice& choice = chain_.links[link].choice;
     const bool is_cut = map_.link_choice[link] == kCut;
@@ -52,9 +56,9 @@ class Placing {
     if (!is_first_choice) margin = hypotheses[taken].score - hypotheses[choice.alternative].score;
     outcome.alignment = judged(hypotheses, taken, margin, options_.robust.confidence);
     outcome.reason = outcome.alignment.reason;
-    outcome.held_by_loops = map_.held_by_loops[link];
     if (is_cut && !hypotheses.empty() && outcome.reason.empty()) {
-      outcome.reason = outcome.held_by_loops ? "loops speak against it" : "less probable than it takes not to split the map";
+      outcome.reason =
+          outcome.held_by_loops ? "loops speak against it" : "less probable than it takes not to split the map";
     }
     if (sink_ && !hypotheses.empty()) {
       const std::size_t reference = chain_.keyframes[link].position_index;

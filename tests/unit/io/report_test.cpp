@@ -39,17 +39,11 @@ class Report : public testing::Test {
     selection_.every = 2;
   }
   Json parsed() const {
-    return Json::parse(json_report({"run\xFF.log",
-                                    log_,
-                                    result_,
-                                    mapping_,
-                                    reading_,
-                                    selection_,
-                                    grid_,
-                                    {"odd"},
-                                    {1.0, 2.0, 3.0, 6.5, 6.0, 50.0}}));
+    return Json::parse(json_report(
+        {logs_, log_, result_, mapping_, reading_, selection_, grid_, {"odd"}, {1.0, 2.0, 3.0, 6.5, 6.0, 50.0}}));
   }
 
+  std::vector<LogFile> logs_{{"run\xFF.log", "carmen"}};
   Log log_;
   MapResult result_;
   MappingOptions mapping_;
@@ -123,6 +117,58 @@ TEST_F(Report, ListsFragmentsAndWhichOneIsTheMap) {
   EXPECT_EQ(fragments[1]["is_map"], false);
 }
 
+TEST_F(Report, TellsWhichLogEachPositionIsFrom) {
+  logs_.push_back({"other.rawlog", "rawlog"});
+  log_.starts = {1};
+  const Json report = parsed();
+  ASSERT_EQ(report["logs"].size(), 2U);
+  EXPECT_EQ(report["logs"][0]["num_positions"], 1);
+  EXPECT_EQ(report["logs"][0]["num_placed"], 1);
+  EXPECT_EQ(report["logs"][1]["path"], "other.rawlog");
+  EXPECT_EQ(report["logs"][1]["format"], "rawlog");
+  EXPECT_EQ(report["logs"][1]["first_index"], 1);
+  EXPECT_EQ(report["logs"][1]["num_positions"], 2);
+  EXPECT_EQ(report["logs"][1]["num_placed"], 1);
+  EXPECT_EQ(report["logs"][1]["duration_s"], 1.5);
+  EXPECT_EQ(report["positions"][0]["log"], 0);
+  EXPECT_EQ(report["positions"][1]["log"], 1);
+  EXPECT_EQ(report["positions"][1]["index_in_whole_log"], 5) << "the first that is left of the second log";
+  EXPECT_EQ(report["positions"][2]["index_in_whole_log"], 7);
+  EXPECT_EQ(report["fragments"][0]["logs"],
+            Json::parse(R"([{"log": 0, "num_positions": 1}, {"log": 1, "num_positions": 1}])"));
+  EXPECT_EQ(report["fragments"][1]["logs"], Json::parse(R"([{"log": 1, "num_positions": 1}])"));
+}
+
+TEST_F(Report, TellsLoopsAndWhatTheyHold) {
+  result_.loops.push_back({0, 1, {1.0, 2.0, kPi / 2}, 12.5});
+  result_.positions[1].held_by_loops = true;
+  result_.times.loops_s = 0.25;
+  const Json report = parsed();
+  ASSERT_EQ(report["loops"].size(), 1U);
+  EXPECT_EQ(report["loops"][0]["a"], 0);
+  EXPECT_EQ(report["loops"][0]["b"], 1);
+  EXPECT_DOUBLE_EQ(report["loops"][0]["a_from_b"]["theta_deg"], 90.0);
+  EXPECT_EQ(report["loops"][0]["strength"], 12.5);
+  EXPECT_EQ(report["positions"][0]["held_by_loops"], false);
+  EXPECT_EQ(report["positions"][1]["held_by_loops"], true);
+  EXPECT_EQ(report["seconds"]["loops"], 0.25);
+  EXPECT_EQ(report["interrupted"], false);
+}
+
+TEST_F(Report, TellsTheKeyframeThatAnAlignmentIsTo) {
+  result_.positions[1].is_keyframe = false;
+  const Json positions = parsed()["positions"];
+  EXPECT_EQ(positions[0]["is_keyframe"], true);
+  EXPECT_EQ(positions[1]["is_keyframe"], false);
+  EXPECT_EQ(positions[1]["alignment"]["reference"], 0);
+  EXPECT_EQ(positions[2]["alignment"]["reference"], 0) << "the one between stands for nothing";
+}
+
+TEST_F(Report, SaysThatARunWasCutShort) {
+  result_.interrupted = true;
+  EXPECT_EQ(parsed()["interrupted"], true);
+}
+
 TEST_F(Report, HoldsEveryOptionInTheUnitOfItsName) {
   mapping_.returns.max_mount_tilt_rad = 25 * kDegree;
   grid_.resolution_m = 0.02;
@@ -146,7 +192,7 @@ TEST_F(Report, NamesVersionsCostsAndTheLogWhateverItsBytes) {
   EXPECT_EQ(report["seconds"]["wall"], 6.5);
   EXPECT_EQ(report["peak_memory_mib"], 50.0);
   EXPECT_EQ(report["warnings"][0], "odd");
-  EXPECT_EQ(report["log"]["path"], "run\xEF\xBF\xBD.log") << "bytes that are no UTF-8 are replaced";
+  EXPECT_EQ(report["logs"][0]["path"], "run\xEF\xBF\xBD.log") << "bytes that are no UTF-8 are replaced";
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ class TraceOfAWalk : public testing::Test {
 
   MapResult write(const std::string& to) const {
     RunObserver nobody;
-    TraceFile trace(to, {"odd\xFF.log", log_, options_, reading_, selection_});
+    TraceFile trace(to, {{"odd\xFF.log"}, log_, options_, reading_, selection_});
     MapResult result = map_log(log_, options_, nobody, &trace);
     trace.commit(result);
     return result;
@@ -168,9 +168,9 @@ TEST_F(TraceOfAWalk, IsCompressedWhenItsNameSaysSo) {
 }
 
 TEST_F(TraceOfAWalk, IsNoFileWithoutACommit) {
-  { TraceFile trace(path(), {"a.log", log_, options_, reading_, selection_}); }
+  { TraceFile trace(path(), {{"a.log"}, log_, options_, reading_, selection_}); }
   EXPECT_FALSE(std::filesystem::exists(path()));
-  EXPECT_THROW(TraceFile(path("no/such/folder.jsonl"), {"a.log", log_, options_, reading_, selection_}), OutputError);
+  EXPECT_THROW(TraceFile(path("no/such/folder.jsonl"), {{"a.log"}, log_, options_, reading_, selection_}), OutputError);
 }
 
 }  // namespace

@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cmath>
+#include <limits>
 #include <random>
 
 #include "shapemap/core/errors.hpp"
@@ -125,7 +128,61 @@ TEST(Motions, AreThoseBetweenPlacedPositionsAfterAZeroForTheFirst) {
   EXPECT_EQ(motions[1].covariance, Eigen::Matrix3d::Identity() * 2.0);
 
   result.positions[2].alignment.covariance(0, 0) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(motions_of(result), ConfigError);
+  result.positions[2].alignment.status = AlignStatus::kOk;
+  EXPECT_THROW(motions_of(result), ConfigError) << "as by the paper's method";
+  result.positions[2].alignment.status = AlignStatus::kNoCorrespondences;
+  EXPECT_EQ(motions_of(result)[1].covariance, Eigen::Matrix3d::Identity()) << "loops alone put it there";
+}
+
+/// A keyframe and two scans that are aligned to it.
+struct Siblings : testing::Test {
+  Siblings() {
+    result.largest_fragment = 0;
+    result.fragments.emplace_back();
+    for (std::size_t i = 0; i < 3; ++i) {
+      PositionResult position;
+      position.position_index = i;
+      position.fragment = 0;
+      position.is_keyframe = i == 0;
+      position.alignment.covariance = Eigen::Vector3d(1e-4, 4e-4, 1e-5).asDiagonal();
+      position.alignment.ranked.emplace_back();
+      position.alignment.ranked.front().ref_from_query = poses[i];
+      result.positions.push_back(position);
+      result.fragments[0].positions.push_back({i, static_cast<double>(i), poses[i], {}});
+    }
+  }
+  std::array<Pose2, 3> poses{Pose2{}, Pose2{0.5, 0.1, 1.2}, Pose2{0.9, -0.4, 1.9}};
+  MapResult result;
+};
+
+TEST_F(Siblings, MotionBetweenThemErrsByBothAlignments) {
+  const std::vector<TimedMotion> motions = motions_of(result);
+  EXPECT_EQ(motions[1].covariance, result.positions[1].alignment.covariance) << "from the keyframe itself";
+  std::mt19937 rng(7);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  const auto disturbed = [&](const Pose2& pose) {
+    return Pose2{pose.x_m + 0.01 * noise(rng), pose.y_m + 0.02 * noise(rng),
+                 pose.theta_rad + std::sqrt(1e-5) * noise(rng)};
+  };
+  constexpr int kDraws = 20000;
+  Eigen::Matrix3d sampled = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < kDraws; ++i) {
+    const Pose2 motion = inverse(disturbed(poses[1])) * disturbed(poses[2]);
+    const Pose2& mean = motions[2].previous_from_this;
+    const Eigen::Vector3d off(motion.x_m - mean.x_m, motion.y_m - mean.y_m,
+                              wrap_angle(motion.theta_rad - mean.theta_rad));
+    sampled += off * off.transpose() / kDraws;
+  }
+  EXPECT_LT((motions[2].covariance - sampled).norm(), 0.05 * sampled.norm());
+}
+
+TEST_F(Siblings, SomeOfThePlacedPositionsHaveMotionsAmongThemselves) {
+  const std::vector<PlacedPosition>& placed = result.fragments[0].positions;
+  const std::vector<TimedMotion> motions = motions_of(result, {placed[1], placed[2]});
+  ASSERT_EQ(motions.size(), 2U);
+  EXPECT_EQ(motions[0].timestamp_s, 1.0);
+  EXPECT_EQ(motions[0].covariance, Eigen::Matrix3d::Zero());
+  EXPECT_THAT(motions[1].previous_from_this, IsNearPose(inverse(poses[1]) * poses[2], 1e-12, 1e-12));
 }
 
 }  // namespace

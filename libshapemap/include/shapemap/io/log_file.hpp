@@ -84,5 +84,7 @@ struct LogSummary {
   std::vector<Sensor> sensors;
 };
 LogSummary summarise(const Log& log);
+/// Of the positions [first, last) only.
+LogSummary summarise(const Log& log, std::size_t first, std::size_t last);
 
 }  // namespace shapemap

@@ -23,9 +23,15 @@ struct RunCosts {
   double peak_memory_mib = 0.0;
 };
 
+/// One of the logs that a map was made of.
+struct LogFile {
+  std::string path;
+  std::string format;
+};
+
 struct RunReport {
-  std::string log_path;
-  const Log& log;  ///< the positions that were looked at
+  std::vector<LogFile> logs;
+  const Log& log;  ///< the selected positions of all logs, see joined_logs()
   const MapResult& result;
   const MappingOptions& mapping;
   const LogReadOptions& reading;

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "shapemap/io/log_file.hpp"
 #include "shapemap/io/log_selection.hpp"
@@ -13,8 +14,8 @@ namespace shapemap {
 
 /// What is traced. The references must outlive the trace.
 struct TracedRun {
-  std::string log_path;
-  const Log& log;  ///< the positions that are looked at
+  std::vector<std::string> log_paths;  ///< one for each log that was joined
+  const Log& log;                      ///< the positions that are looked at
   const MappingOptions& mapping;
   const LogReadOptions& reading;
   const SelectionOptions& selection;

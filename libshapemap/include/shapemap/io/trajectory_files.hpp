@@ -30,9 +30,10 @@ struct TimedMotion {
 };
 
 /// One for each placed position, as many as tum_trajectory() has lines; that of the first is zero and says nothing. See
-/// docs/formats.md. Throws ConfigError for a result of the paper's
-/// method, which knows no covariances.
+/// docs/formats.md. Throws ConfigError for a result of the paper's method, which knows no covariances.
 std::vector<TimedMotion> motions_of(const MapResult& result);
+/// Of some of the placed positions only, such as those of one log.
+std::vector<TimedMotion> motions_of(const MapResult& result, const std::vector<PlacedPosition>& placed);
 
 /// One line for each motion.
 std::string motion_lines(const std::vector<TimedMotion>& motions);

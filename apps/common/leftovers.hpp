@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+/// What a process that leaves in the middle of its work would leave behind.
+namespace shapemap::cli {
+
+/// Takes away the temporary files of AtomicFile that this process has in `folder`.
+void remove_temporary_files(const std::string& folder);
+
+}  // namespace shapemap::cli

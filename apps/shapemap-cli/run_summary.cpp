@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run_summary.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "console.hpp"
+#include "run_program.hpp"
+
+namespace shapemap::cli {
+namespace {
+
+std::string counted(std::size_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+void print_line(const std::string& text) { std::fprintf(stderr, "%s: %s\n", kProgramName, printable(text).c_str()); }
+
+/// Whether an alignment to the positions before is behind its place; not so at the start of a log.
+bool is_chained(const PositionResult& position) {
+  return position.fragment >= 0 && !position.starts_fragment && position.alignment.status != AlignStatus::kNoShape;
+}
+
+/// What makes the map though its alignment is in doubt.
+bool is_doubtful(const PositionResult& position) { return is_chained(position) && !position.alignment.ok(); }
+
+bool is_uncertain(const PositionResult& position) { return is_doubtful(position) && !position.held_by_loops; }
+
+std::vector<std::string> uncertain_lines(const LogSet& logs, const MapResult& result) {
+  std::vector<std::string> lines;
+  for (const PositionResult& position : result.positions) {
+    if (!is_uncertain(position)) continue;
+    lines.push_back(logs.position_name(position.position_index) + " " + enum_name(position.alignment.status) + ": " +
+                    position.alignment.reason);
+  }
+  return lines;
+}
+
+void print_uncertain(const MapResult& result) {
+  std::size_t aligned = 0;
+  std::size_t held = 0;
+  std::size_t too_apart = 0;
+  std::size_t ambiguous = 0;
+  std::size_t degenerate = 0;
+  for (const PositionResult& position : result.positions) {
+    if (is_chained(position)) ++aligned;
+    if (is_doubtful(position) && position.held_by_loops) ++held;
+    if (!is_uncertain(position)) continue;
+    const AlignStatus status = position.alignment.status;
+    ++(status == AlignStatus::kAmbiguous ? ambiguous : status == AlignStatus::kDegenerate ? degenerate : too_apart);
+  }
+  const std::size_t uncertain = too_apart + ambiguous + degenerate;
+  if (uncertain + held == 0) return;
+  std::string text = std::to_string(uncertain) + " of " + counted(aligned, "alignment") + " are uncertain";
+  if (uncertain > 0) {
+    text += ": " + std::to_string(too_apart) + " with too little overlap, " + std::to_string(ambiguous) +
+            " ambiguous, " + std::to_string(degenerate) + " degenerate";
+  }
+  if (held > 0) text += "; " + std::to_string(held) + " more would be, but loops hold these positions";
+  print_line(text);
+}
+
+/// "positions 3 to 8 of a.log, 0 to 4 of b.log"
+std::string fragment_text(const LogSet& logs, const std::vector<PlacedPosition>& positions) {
+  std::string text;
+  for (const LogPart& part : parts_of(logs.log)) {
+    const std::vector<PlacedPosition> own = placed_of(positions, part);
+    if (own.empty()) continue;
+    text += (text.empty() ? "" : "; ") + counted(own.size(), "position") + ", " +
+            logs.position_name(own.front().position_index) + " to " + logs.position_name(own.back().position_index);
+  }
+  return text;
+}
+
+std::vector<std::string> fragment_lines(const LogSet& logs, const MapResult& result) {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < result.fragments.size(); ++i) {
+    if (static_cast<int>(i) == result.largest_fragment || result.fragments[i].positions.empty()) continue;
+    lines.push_back("fragment " + std::to_string(i) +
+                    " is apart from the map: " + fragment_text(logs, result.fragments[i].positions));
+  }
+  return lines;
+}
+
+/// Of several logs, each; a robot that is nowhere on the map must not be overlooked.
+void print_logs(const LogSet& logs, const MapResult& result) {
+  if (logs.is_one()) return;
+  const std::vector<LogPart> parts = parts_of(logs.log);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::size_t placed = placed_of(result.placed(), parts[i]).size();
+    const std::string total = counted(parts[i].last - parts[i].first, "position");
+    print_line(logs.files.at(i).path + ": " +
+               (placed == 0 ? "nothing ties it to the map, none of " + total + " placed"
+                            : "placed " + std::to_string(placed) + " of " + total));
+  }
+}
+
+void print_details(const LogSet& logs, const RunCosts& costs, const StageTimes& times) {
+  const std::vector<LogPart> parts = parts_of(logs.log);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (!logs.is_one()) std::fprintf(stderr, "log         %s\n", printable(logs.files.at(i).path).c_str());
+    LogSummary summary = summarise(logs.log, parts[i].first, parts[i].last);
+    summary.format = logs.files.at(i).format;
+    std::fputs(log_summary_text(summary).c_str(), stderr);
+  }
+  std::fprintf(
+      stderr,
+      "seconds     read %.2f, map %.2f (shapes %.2f, alignment %.2f, ICP %.2f, decoupled ICP %.2f, loops %.2f), "
+      "write %.2f\n"
+      "memory      %.0f MiB\n",
+      costs.read_s, costs.map_s, times.shape_s, times.align_s, times.icp_s, times.decoupled_icp_s, times.loops_s,
+      costs.write_s, costs.peak_memory_mib);
+}
+
+std::string result_text(const MapArguments& arguments, const MapResult& result, double wall_s) {
+  const auto keyframes = std::count_if(result.positions.begin(), result.positions.end(), [](const auto& position) {
+    return position.fragment >= 0 && position.is_keyframe;
+  });
+  char seconds[32];
+  std::snprintf(seconds, sizeof seconds, "%.1f s", wall_s);
+  return "placed " + std::to_string(result.placed().size()) + " of " + counted(result.positions.size(), "position") +
+         " (" + counted(static_cast<std::size_t>(keyframes), "keyframe") + ", " + counted(result.loops.size(), "loop") +
+         ", " + counted(result.fragments.size(), "fragment") + ") in " + seconds + "; map: " + arguments.map_path;
+}
+
+}  // namespace
+
+std::vector<std::string> unplaced_lines(const LogSet& logs, const MapResult& result) {
+  std::vector<std::string> lines;
+  for (const PositionResult& position : result.positions) {
+    const std::string why = result.why_not_in_map(position);
+    if (!why.empty()) lines.push_back(logs.position_name(position.position_index) + " not placed: " + why);
+  }
+  return lines;
+}
+
+void print_interrupted(const LogSet& logs, const MapResult& result) {
+  const std::size_t total = logs.log.positions.size();
+  const std::string where = result.positions.size() < total ? "after " + std::to_string(result.positions.size()) +
+                                                                  " of " + counted(total, "position")
+                                                            : "before all loops were looked for";
+  print_line("interrupted " + where + "; writing the map so far (once more: leave at once, with nothing written)");
+}
+
+void print_summary(const MapArguments& arguments, const LogSet& logs, const MapResult& result,
+                   const std::vector<std::string>& warnings, const RunCosts& costs) {
+  if (arguments.verbosity == Verbosity::kQuiet) return;
+  const bool verbose = arguments.verbosity == Verbosity::kVerbose;
+  const std::size_t max_listed = verbose ? static_cast<std::size_t>(-1) : kMaxListed;
+  print_lines("warning: ", warnings, max_listed);
+  print_lines("", unplaced_lines(logs, result), max_listed);
+  print_lines("", uncertain_lines(logs, result), max_listed);
+  if (verbose) print_lines("", fragment_lines(logs, result), max_listed);
+  if (verbose) print_details(logs, costs, result.times);
+  print_uncertain(result);
+  print_logs(logs, result);
+  print_line(result_text(arguments, result, costs.wall_s));
+}
+
+}  // namespace shapemap::cli

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "arguments.hpp"
+#include "log_set.hpp"
+
+/// What a run says about itself on the console.
+namespace shapemap::cli {
+
+/// Positions that have no place in the map.
+std::vector<std::string> unplaced_lines(const LogSet& logs, const MapResult& result);
+
+/// After mapping, before the map is written.
+void print_interrupted(const LogSet& logs, const MapResult& result);
+
+/// All of it, once the map is written.
+void print_summary(const MapArguments& arguments, const LogSet& logs, const MapResult& result,
+                   const std::vector<std::string>& warnings, const RunCosts& costs);
+
+}  // namespace shapemap::cli

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "references.hpp"
+
+namespace shapemap {
+
+std::vector<std::size_t> references_of(const MapResult& result) {
+  std::vector<std::size_t> references;
+  std::size_t keyframe = kNoReference;
+  for (const PositionResult& position : result.positions) {
+    references.push_back(keyframe);
+    if (position.fragment >= 0 && position.is_keyframe) keyframe = position.position_index;
+  }
+  return references;
+}
+
+}  // namespace shapemap

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/scan/joined_logs.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <utility>
+
+namespace shapemap {
+
+Log joined_logs(std::vector<Log> logs) {
+  Log all;
+  std::set<std::string> formats;
+  for (std::size_t k = 0; k < logs.size(); ++k) {
+    Log& log = logs[k];
+    const std::size_t first = all.positions.size();
+    if (k > 0) all.starts.push_back(first);
+    for (const std::size_t start : log.starts) all.starts.push_back(first + start);
+    std::move(log.positions.begin(), log.positions.end(), std::back_inserter(all.positions));
+    std::move(log.warnings.begin(), log.warnings.end(), std::back_inserter(all.warnings));
+    if (formats.insert(log.format).second) all.format += (all.format.empty() ? "" : "+") + log.format;
+  }
+  return all;
+}
+
+std::vector<LogPart> parts_of(const Log& log) {
+  std::vector<LogPart> parts{{0, log.positions.size()}};
+  for (const std::size_t start : log.starts) {
+    parts.back().last = start;
+    parts.push_back({start, log.positions.size()});
+  }
+  return parts;
+}
+
+std::size_t part_with(const Log& log, std::size_t index) {
+  return static_cast<std::size_t>(std::upper_bound(log.starts.begin(), log.starts.end(), index) - log.starts.begin());
+}
+
+}  // namespace shapemap
