@@ -78,6 +78,10 @@ void add_outputs(CLI::App& app, MapArguments& arguments) {
       "options, results, timings as JSON, '-' for standard output; example: --report report.json");
   add("--trace", arguments.trace_path,
       "every step that led to the map, a JSON object a line, .gz compresses; example: --trace trace.jsonl");
+  add("--save-state", arguments.state_path,
+      "what was aligned, as soon as it is, so that a run that was cut short can be resumed; example: --save-state "
+      "run.state");
+  app.add_flag("--resume", arguments.resume, "go on from the file that --save-state names")->group("Output");
   app.add_flag("--force", arguments.force, "replace outputs that exist")->group("Output");
 }
 

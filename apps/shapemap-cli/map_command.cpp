@@ -9,6 +9,7 @@
 #include "map_outputs.hpp"
 #include "options_file.hpp"
 #include "run_observer.hpp"
+#include "saved_state.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/io/trace_file.hpp"
 #include "shapemap/map/map_log.hpp"
@@ -89,7 +90,9 @@ void print_details(const Log& log, const RunCosts& costs, const StageTimes& time
 MapResult map_with_progress(const Log& log, const MapArguments& arguments, TraceSink* sink,
                             std::vector<std::string>& warnings) {
   ConsoleObserver observer(arguments.verbosity != Verbosity::kQuiet);
-  MapResult result = map_log(log, arguments.settings.mapping, observer, sink);
+  const std::unique_ptr<AlignmentStoreFile> state = open_state(arguments, log, warnings);
+  print_resumed(arguments, state.get());
+  MapResult result = map_log(log, arguments.settings.mapping, observer, sink, state.get());
   observer.finish();
   if (result.interrupted || interrupted()) throw Interrupted();
   warnings.insert(warnings.end(), observer.warnings().begin(), observer.warnings().end());
@@ -124,6 +127,7 @@ int run_map(const MapArguments& arguments) {
     return kExitOk;
   }
   check_outputs(output_paths(arguments), arguments.log_path, arguments.force);
+  check_state(arguments);
   const Log log =
       select_positions(read_log(arguments.log_path, arguments.format, settings.reading), settings.selection);
   RunCosts costs;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "shapemap/align/confidence.hpp"
 #include "shapemap/core/errors.hpp"
@@ -27,15 +26,11 @@ struct Pair {
   std::size_t b;
 };
 
-/// Most of the pairs have nothing in common, and all rotations would be tried on each.
-HypothesisSearchOptions quick(HypothesisSearchOptions search) {
-  search.hypotheses.all_rotations_below = -std::numeric_limits<double>::infinity();
-  return search;
-}
-
+/// Most of the pairs have nothing in common, and all rotations would be tried on each: a quick search.
 std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, const HypothesisSearchOptions& search,
-                                    double least_probability) {
-  const std::vector<PoseHypothesis> poses = pose_hypotheses(*views[pair.a], *views[pair.b], search);
+                                    double least_probability, AlignmentStore* store) {
+  const std::vector<PoseHypothesis> poses =
+      pose_hypotheses(*views[pair.a], *views[pair.b], search, {pair.a, pair.b, SearchKind::kQuick}, store);
   std::vector<LoopHypothesis> found;
   for (std::size_t k = 0; k < std::min(kPosesPerPair, poses.size()); ++k) {
     const double margin = k == 0 ? lead_of_first(poses) : poses[k].score - poses[0].score;
@@ -49,14 +44,15 @@ std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, co
 
 std::vector<LoopHypothesis> all_aligned(const NodeViews& views, const std::vector<Pair>& pairs,
                                         const HypothesisSearchOptions& search, double least_probability, int threads,
-                                        RunObserver& observer) {
+                                        RunObserver& observer, AlignmentStore* store) {
   std::vector<LoopHypothesis> all;
   for (std::size_t first = 0; first < pairs.size(); first += kBlock) {
     if (!observer.keep_going()) throw Interrupted();
     const std::size_t count = std::min(kBlock, pairs.size() - first);
     std::vector<std::vector<LoopHypothesis>> found(count);
-    parallel_for(count, threads,
-                 [&](std::size_t i) { found[i] = aligned(views, pairs[first + i], search, least_probability); });
+    parallel_for(count, threads, [&](std::size_t i) {
+      found[i] = aligned(views, pairs[first + i], search, least_probability, store);
+    });
     for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
     observer.on_progress(first + count, pairs.size());
   }
@@ -66,7 +62,8 @@ std::vector<LoopHypothesis> all_aligned(const NodeViews& views, const std::vecto
 }  // namespace
 
 std::vector<LoopHypothesis> likely_loops(const NodeViews& views, const HypothesisSearchOptions& search,
-                                         const LoopSearchOptions& options, int threads, RunObserver& observer) {
+                                         const LoopSearchOptions& options, int threads, RunObserver& observer,
+                                         AlignmentStore* store) {
   std::vector<PlaceSignature> signatures(views.size());
   parallel_for(views.size(), threads, [&](std::size_t i) { signatures[i] = place_signature(*views[i]); });
   PlaceIndex index;
@@ -82,18 +79,19 @@ std::vector<LoopHypothesis> likely_loops(const NodeViews& views, const Hypothesi
   for (std::size_t b = 0; b < views.size(); ++b) {
     for (const LikelyPlace& place : places[b]) pairs.push_back({place.node, b});
   }
-  return all_aligned(views, pairs, quick(search), options.least_probability, threads, observer);
+  return all_aligned(views, pairs, search, options.least_probability, threads, observer, store);
 }
 
 std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<std::size_t>& links,
-                                    const HypothesisSearchOptions& search, int threads, RunObserver& observer) {
+                                    const HypothesisSearchOptions& search, int threads, RunObserver& observer,
+                                    AlignmentStore* store) {
   std::vector<Pair> pairs;
   for (const std::size_t link : links) {
     for (std::size_t a = link + 1 - std::min(kBridgeNodes, link + 1); a <= link; ++a) {
       for (std::size_t b = link + 1; b < std::min(views.size(), link + 1 + kBridgeNodes); ++b) pairs.push_back({a, b});
     }
   }
-  return all_aligned(views, pairs, quick(search), 0.0, threads, observer);
+  return all_aligned(views, pairs, search, 0.0, threads, observer, store);
 }
 
 }  // namespace shapemap
