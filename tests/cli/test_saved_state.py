@@ -56,7 +56,8 @@ def finished(cli_path, walk_text, tmp_path_factory):
     (folder / "out").mkdir()
     outputs = [part for flag, name in OUTPUTS.items() for part in (flag, f"out/{name}")]
     subprocess.run([cli_path, "walk.log", *outputs, *OPTIONS, *STATE], cwd=folder, check=True, capture_output=True)
-    return {name: (folder / "out" / name).read_bytes() for name in OUTPUTS.values()}, (folder / "run.state").read_bytes()
+    written = {name: (folder / "out" / name).read_bytes() for name in OUTPUTS.values()}
+    return written, (folder / "run.state").read_bytes()
 
 
 @pytest.fixture

@@ -50,9 +50,8 @@ std::vector<LoopHypothesis> all_aligned(const NodeViews& views, const std::vecto
     if (!observer.keep_going()) throw Interrupted();
     const std::size_t count = std::min(kBlock, pairs.size() - first);
     std::vector<std::vector<LoopHypothesis>> found(count);
-    parallel_for(count, threads, [&](std::size_t i) {
-      found[i] = aligned(views, pairs[first + i], search, least_probability, store);
-    });
+    parallel_for(count, threads,
+                 [&](std::size_t i) { found[i] = aligned(views, pairs[first + i], search, least_probability, store); });
     for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
     observer.on_progress(first + count, pairs.size());
   }

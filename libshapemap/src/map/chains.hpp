@@ -8,8 +8,8 @@
 #include "shapemap/map/trajectory.hpp"
 #include "shapemap/scan/scan.hpp"
 
-/// The two ways to map a log. Each fills in positions, fragments and times, and throws Interrupted when the observer asks
-/// to stop; what is in `result` then is whole. `sink` and `store` may be null.
+/// The two ways to map a log. Each fills in positions, fragments and times, and throws Interrupted when the observer
+/// asks to stop; what is in `result` then is whole. `sink` and `store` may be null.
 namespace shapemap {
 
 /// The paper's: each scan against the partial map of the few before it.

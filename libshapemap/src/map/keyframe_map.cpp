@@ -78,7 +78,8 @@ void find_parts(const KeyframeChain& chain, const std::vector<PoseConstraint>& l
 /// Knows the alignments of keyframes as those of their positions.
 class KeyframeStore : public AlignmentStore {
  public:
-  KeyframeStore(const KeyframeChain& chain, AlignmentStore& of_positions) : chain_(chain), of_positions_(of_positions) {}
+  KeyframeStore(const KeyframeChain& chain, AlignmentStore& of_positions)
+      : chain_(chain), of_positions_(of_positions) {}
 
   std::optional<std::vector<PoseHypothesis>> find(const AlignmentKey& key) override {
     return of_positions_.find(of_position(key));
@@ -156,8 +157,8 @@ KeyframeMap map_with_loops(const KeyframeChain& chain, const MappingOptions& opt
 
   std::optional<KeyframeStore> of_keyframes;
   if (store) of_keyframes.emplace(chain, *store);
-  const std::vector<LoopCluster> clusters = loop_candidates(views, links, map.map_from_keyframe, options, observer,
-                                                            of_keyframes ? &*of_keyframes : nullptr);
+  const std::vector<LoopCluster> clusters =
+      loop_candidates(views, links, map.map_from_keyframe, options, observer, of_keyframes ? &*of_keyframes : nullptr);
   const LoopSolution solution = close_loops(views, links, clusters, options.robust.search.visibility,
                                             options.loop_closing, options.chain.threads, observer);
   for (std::size_t i = 0; i < links.size(); ++i) {
