@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/align/alignment_store.hpp"
 
-#include <limits>
 #include <utility>
 
 namespace shapemap {
-
-HypothesisSearchOptions quick_search(HypothesisSearchOptions search) {
-  search.hypotheses.all_rotations_below = -std::numeric_limits<double>::infinity();
-  return search;
-}
 
 std::vector<PoseHypothesis> pose_hypotheses(const ScanView& reference, const ScanView& query,
                                             const HypothesisSearchOptions& options, const AlignmentKey& key,
@@ -17,8 +11,7 @@ std::vector<PoseHypothesis> pose_hypotheses(const ScanView& reference, const Sca
   if (store) {
     if (std::optional<std::vector<PoseHypothesis>> known = store->find(key)) return std::move(*known);
   }
-  std::vector<PoseHypothesis> found =
-      pose_hypotheses(reference, query, key.search == SearchKind::kQuick ? quick_search(options) : options);
+  std::vector<PoseHypothesis> found = pose_hypotheses(reference, query, options);
   if (store) store->keep(key, found);
   return found;
 }

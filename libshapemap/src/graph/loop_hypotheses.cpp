@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "shapemap/align/confidence.hpp"
 #include "shapemap/core/errors.hpp"
@@ -26,11 +27,21 @@ struct Pair {
   std::size_t b;
 };
 
-/// Most of the pairs have nothing in common, and all rotations would be tried on each: a quick search.
+/// Most of the pairs have nothing in common, and there are many: a search with less effort, which other scans of the
+/// same two stretches make up for.
+HypothesisSearchOptions quick(HypothesisSearchOptions search) {
+  search.hypotheses.all_rotations_below = -std::numeric_limits<double>::infinity();
+  search.hypotheses.rotation_peaks = std::max(1, search.hypotheses.rotation_peaks * 3 / 4);
+  search.hypotheses.shape_segments = 0;
+  search.hypotheses.refined = std::max(1, search.hypotheses.refined / 2);
+  search.voting.peaks = std::max(1, search.voting.peaks / 2);
+  return search;
+}
+
 std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, const HypothesisSearchOptions& search,
                                     double least_probability, AlignmentStore* store) {
   const std::vector<PoseHypothesis> poses =
-      pose_hypotheses(*views[pair.a], *views[pair.b], search, {pair.a, pair.b, SearchKind::kQuick}, store);
+      pose_hypotheses(*views[pair.a], *views[pair.b], search, {pair.a, pair.b, SearchKind::kLoop}, store);
   std::vector<LoopHypothesis> found;
   for (std::size_t k = 0; k < std::min(kPosesPerPair, poses.size()); ++k) {
     const double margin = k == 0 ? lead_of_first(poses) : poses[k].score - poses[0].score;
@@ -78,7 +89,7 @@ std::vector<LoopHypothesis> likely_loops(const NodeViews& views, const Hypothesi
   for (std::size_t b = 0; b < views.size(); ++b) {
     for (const LikelyPlace& place : places[b]) pairs.push_back({place.node, b});
   }
-  return all_aligned(views, pairs, search, options.least_probability, threads, observer, store);
+  return all_aligned(views, pairs, quick(search), options.least_probability, threads, observer, store);
 }
 
 std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<std::size_t>& links,
@@ -90,7 +101,7 @@ std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<st
       for (std::size_t b = link + 1; b < std::min(views.size(), link + 1 + kBridgeNodes); ++b) pairs.push_back({a, b});
     }
   }
-  return all_aligned(views, pairs, search, 0.0, threads, observer, store);
+  return all_aligned(views, pairs, quick(search), 0.0, threads, observer, store);
 }
 
 }  // namespace shapemap

@@ -57,10 +57,16 @@ std::vector<LikelyPlace> PlaceIndex::most_alike(std::size_t node, std::size_t en
   const auto more_alike = [](const LikelyPlace& a, const LikelyPlace& b) {
     return a.likeness != b.likeness ? a.likeness > b.likeness : a.node < b.node;
   };
-  const std::size_t kept = std::min(count, places.size());
-  std::partial_sort(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(kept), places.end(), more_alike);
-  places.resize(kept);
-  return places;
+  std::sort(places.begin(), places.end(), more_alike);
+  std::vector<LikelyPlace> apart;
+  for (const LikelyPlace& place : places) {
+    if (apart.size() == count) break;
+    const bool beside = std::any_of(apart.begin(), apart.end(), [&](const LikelyPlace& other) {
+      return std::max(place.node, other.node) - std::min(place.node, other.node) <= 1;
+    });
+    if (!beside) apart.push_back(place);
+  }
+  return apart;
 }
 
 }  // namespace shapemap

@@ -16,8 +16,17 @@ using Parameters = std::array<double, 3>;  // x, y, theta; the angle is not wrap
 
 Eigen::Matrix3d square_root_information(const Eigen::Matrix3d& covariance) {
   const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
-  if (llt.info() != Eigen::Success) throw std::invalid_argument("a covariance is not positive definite");
+  // A covariance of NaN passes the decomposition.
+  if (!covariance.allFinite() || llt.info() != Eigen::Success)
+    throw std::invalid_argument("a covariance is not positive definite");
   return llt.matrixL().solve(Eigen::Matrix3d::Identity());
+}
+
+/// The solver would say so on standard error, and go on.
+void require_finite(const Pose2& pose) {
+  if (!std::isfinite(pose.x_m) || !std::isfinite(pose.y_m) || !std::isfinite(pose.theta_rad)) {
+    throw std::invalid_argument("a pose is not finite");
+  }
 }
 
 /// Weighted difference of a relative pose and the measured one, in the frame of the first node.
@@ -80,10 +89,14 @@ PoseGraphSolution solve_pose_graph(const std::vector<Pose2>& map_from_node,
   const std::vector<std::size_t> part = connected_parts(map_from_node.size(), constraints);
   std::vector<Parameters> nodes;
   nodes.reserve(map_from_node.size());
-  for (const Pose2& pose : map_from_node) nodes.push_back({pose.x_m, pose.y_m, pose.theta_rad});
+  for (const Pose2& pose : map_from_node) {
+    require_finite(pose);
+    nodes.push_back({pose.x_m, pose.y_m, pose.theta_rad});
+  }
 
   ceres::Problem problem;
   for (const PoseConstraint& constraint : constraints) {
+    require_finite(constraint.a_from_b);
     ceres::LossFunction* loss =
         constraint.loss_scale > 0.0 ? new ceres::CauchyLoss(constraint.loss_scale) : nullptr;  // the problem owns both
     problem.AddResidualBlock(new RelativePoseError(constraint), loss, nodes[constraint.a].data(),

@@ -87,7 +87,7 @@ std::string record_bytes(const AlignmentKey& key, const std::vector<PoseHypothes
   body.reserve(kKeyBytes + kHypothesisBytes * hypotheses.size());
   append_word(body, key.reference);
   append_word(body, key.query);
-  append_word(body, key.search == SearchKind::kQuick ? 1 : 0);
+  append_word(body, static_cast<std::uint64_t>(key.search));
   for (const PoseHypothesis& hypothesis : hypotheses) append_hypothesis(body, hypothesis);
   std::string bytes;
   bytes.reserve(kRecordHeadBytes + body.size());
@@ -106,9 +106,9 @@ std::optional<RecordHead> record_head(std::string_view bytes) {
 std::optional<AlignmentRecord> alignment_record(const RecordHead& head, std::string_view body) {
   if (body.size() != head.num_bytes || checksum_of(body) != head.checksum) return std::nullopt;
   const std::uint64_t search = word_at(body, 2 * kWordBytes);
-  if (search > 1) return std::nullopt;
+  if (search > static_cast<std::uint64_t>(SearchKind::kLoop)) return std::nullopt;
   AlignmentRecord record;
-  record.key = {word_at(body, 0), word_at(body, kWordBytes), search == 1 ? SearchKind::kQuick : SearchKind::kFull};
+  record.key = {word_at(body, 0), word_at(body, kWordBytes), static_cast<SearchKind>(search)};
   for (std::size_t at = kKeyBytes; at < body.size(); at += kHypothesisBytes) {
     record.hypotheses.push_back(hypothesis_at(body, at));
   }

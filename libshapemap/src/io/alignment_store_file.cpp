@@ -29,8 +29,7 @@ constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 31U;
 
 /// One number for a key; positions are fewer than kMostPositions.
 std::uint64_t packed(const AlignmentKey& key) {
-  return std::uint64_t{key.reference} << 32U | std::uint64_t{key.query} << 1U |
-         (key.search == SearchKind::kQuick ? 1U : 0U);
+  return std::uint64_t{key.reference} << 33U | std::uint64_t{key.query} << 2U | static_cast<std::uint64_t>(key.search);
 }
 
 /// Up to `count` bytes, fewer at the end of the file.

@@ -36,6 +36,7 @@ bool is_small(const Pose2& step, double metres, double radians) {
 void KeyframeTracker::start(std::shared_ptr<const ScanView> keyframe) {
   keyframe_ = std::move(keyframe);
   last_ = {};
+  step_ = {};
   attached_ *= kMemory;
 }
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <numeric>
 
@@ -122,7 +123,7 @@ class RobustChain {
     result_.times.align_s += timed_for(count, [&](std::size_t i) {
       const std::size_t link = first + i - 1;
       if (starts_log(position_of(link), position_of(link + 1))) return;
-      hypotheses(link) = aligned(link, link + 1, SearchKind::kFull);
+      hypotheses(link) = aligned(link, link + 1, SearchKind::kFull, options_.robust.search);
     });
     std::vector<std::vector<PoseHypothesis>> borrowed(count);
     result_.times.align_s += timed_for(count, [&](std::size_t i) { borrowed[i] = borrow_hypotheses(first + i - 1); });
@@ -147,8 +148,9 @@ class RobustChain {
   const ScanView& view_of_keyframe(std::size_t i) const { return *chain_.keyframes[i].view; }
   std::size_t position_of(std::size_t keyframe) const { return chain_.keyframes[keyframe].position_index; }
 
-  std::vector<PoseHypothesis> aligned(std::size_t reference, std::size_t query, SearchKind search) const {
-    return pose_hypotheses(view_of_keyframe(reference), view_of_keyframe(query), options_.robust.search,
+  std::vector<PoseHypothesis> aligned(std::size_t reference, std::size_t query, SearchKind search,
+                                      const HypothesisSearchOptions& options) const {
+    return pose_hypotheses(view_of_keyframe(reference), view_of_keyframe(query), options,
                            {position_of(reference), position_of(query), search}, store_);
   }
 
@@ -156,6 +158,8 @@ class RobustChain {
   std::vector<PoseHypothesis> borrow_hypotheses(std::size_t link) const {
     std::vector<PoseHypothesis> borrowed;
     if (starts_log(position_of(link), position_of(link + 1)) || !in_doubt(hypotheses(link))) return borrowed;
+    HypothesisSearchOptions quick = options_.robust.search;
+    quick.hypotheses.all_rotations_below = -std::numeric_limits<double>::infinity();
     const ScanView& reference = view_of_keyframe(link);
     const ScanView& query = view_of_keyframe(link + 1);
     const double limit_m = max_shift_m(reference, query, options_.robust.search.voting);
@@ -163,7 +167,7 @@ class RobustChain {
     for (std::size_t back = 1; back <= static_cast<std::size_t>(options_.smoothing.more_references); ++back) {
       if (link < back || hypotheses(link - back).empty()) break;
       far_from_reference = hypotheses(link - back).front().ref_from_query * far_from_reference;
-      const std::vector<PoseHypothesis> seen_from_far = aligned(link - back, link + 1, SearchKind::kQuick);
+      const std::vector<PoseHypothesis> seen_from_far = aligned(link - back, link + 1, SearchKind::kBorrowed, quick);
       for (std::size_t k = 0; k < std::min(kBorrowed, seen_from_far.size()); ++k) {
         const Pose2 ref_from_query = inverse(far_from_reference) * seen_from_far[k].ref_from_query;
         if (ref_from_query.translation().lpNorm<Eigen::Infinity>() > limit_m) continue;

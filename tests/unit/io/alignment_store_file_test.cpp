@@ -125,7 +125,8 @@ TEST_F(AlignmentStoreFileTest, TellsDirectionsAndSearchesApart) {
   AlignmentStoreFile state = opened(StateOpening::kCreate);
   state.keep({1, 2, SearchKind::kFull}, {});
   EXPECT_TRUE(state.find({1, 2, SearchKind::kFull}));
-  EXPECT_FALSE(state.find({1, 2, SearchKind::kQuick}));
+  EXPECT_FALSE(state.find({1, 2, SearchKind::kBorrowed}));
+  EXPECT_FALSE(state.find({1, 2, SearchKind::kLoop}));
   EXPECT_FALSE(state.find({2, 1, SearchKind::kFull}));
 }
 

@@ -129,17 +129,17 @@ TEST(AlignmentStore, IsAskedByPosition) {
   using Key = MemoryStore::Key;
   EXPECT_EQ(store.known.count(Key{4, 6, SearchKind::kFull}), 1U);  // 5 is blind
   std::size_t of_last = 0;
-  std::size_t quick = 0;
+  std::size_t borrowed = 0;
   for (const auto& [key, unused] : store.known) {
     const auto [reference, query, search] = key;
     EXPECT_LT(reference, query);
     EXPECT_NE(reference, 5U);
     EXPECT_NE(query, 5U);
-    of_last += query == 33 && search == SearchKind::kQuick ? 1 : 0;
-    quick += search == SearchKind::kQuick ? 1 : 0;
+    of_last += query == 33 && search == SearchKind::kLoop ? 1 : 0;
+    borrowed += search == SearchKind::kBorrowed ? 1 : 0;
   }
   EXPECT_GT(of_last, 2U);
-  EXPECT_GT(quick, 50U);
+  EXPECT_GT(borrowed, 30U);
 }
 
 TEST(AlignmentStore, EndsTheRunWhenItCannotKeep) {

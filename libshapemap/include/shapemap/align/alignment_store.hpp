@@ -11,8 +11,9 @@
 namespace shapemap {
 
 enum class SearchKind {
-  kFull,   ///< all rotations are tried if none fits
-  kQuick,  ///< never
+  kFull,      ///< of a scan and the one before
+  kBorrowed,  ///< of a scan and one further back: never all rotations
+  kLoop,      ///< of many pairs, most of which have nothing in common: with little effort
 };
 
 /// Which alignment of a log; both are indices of its positions.
@@ -31,11 +32,8 @@ struct AlignmentStore {
   virtual void keep(const AlignmentKey& key, const std::vector<PoseHypothesis>& hypotheses) = 0;
 };
 
-/// The same search, but never all rotations: for pairs most of which have nothing in common.
-HypothesisSearchOptions quick_search(HypothesisSearchOptions search);
-
-/// pose_hypotheses() by a search of the kind that `key` says, unless `store` has them; they are kept there otherwise.
-/// `store` may be null.
+/// pose_hypotheses(), unless `store` has them; they are kept there otherwise. `options` are those of the kind of search
+/// that `key` says. `store` may be null.
 std::vector<PoseHypothesis> pose_hypotheses(const ScanView& reference, const ScanView& query,
                                             const HypothesisSearchOptions& options, const AlignmentKey& key,
                                             AlignmentStore* store);

@@ -14,7 +14,7 @@
 namespace shapemap {
 
 struct LoopSearchOptions {
-  int likely_places = 10;
+  int likely_places = 6;
   int shortest_loop = 10;
   double least_probability = 0.02;
   double bridge_below = 0.5;

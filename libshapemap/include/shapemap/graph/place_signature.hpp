@@ -33,7 +33,7 @@ class PlaceIndex {
   void add(const PlaceSignature& signature) { signatures_.push_back(signature); }
   std::size_t size() const { return signatures_.size(); }
 
-  /// The `count` nodes below `end` that look most like `node`, best first.
+  /// The `count` nodes below `end` that look most like `node`, best first; of neighbours only the better one.
   std::vector<LikelyPlace> most_alike(std::size_t node, std::size_t end, std::size_t count) const;
 
  private:

@@ -26,8 +26,8 @@ struct PoseGraphSolution {
 };
 
 /// Least squares over all `constraints`, from `map_from_node`. The first node of each part that hangs together stays
-/// where it is. Same input, same bits. Throws std::invalid_argument for a node that does not exist, or a covariance that
-/// is none.
+/// where it is. Same input, same bits. Throws std::invalid_argument for a node that does not exist, a covariance that
+/// is none, or a pose that is not finite.
 PoseGraphSolution solve_pose_graph(const std::vector<Pose2>& map_from_node,
                                    const std::vector<PoseConstraint>& constraints, int max_iterations = 30);
 

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/graph/loop_closing.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+#include "shapemap/graph/map_evidence.hpp"
+#include "support/matchers.hpp"
+#include "support/ring_walk.hpp"
+
+namespace shapemap {
+namespace {
+
+using test::HasSameBits;
+using test::kRingLap;
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+constexpr std::size_t kAgain = 8;  // steps that are walked a second time
+constexpr double kGood_m = 0.35;
+
+/// Says yes `times` times.
+struct Patience : RunObserver {
+  explicit Patience(std::size_t times) : left(times) {}
+  bool keep_going() override {
+    ++asked;
+    if (left > 0) --left;
+    return left > 0;
+  }
+  std::size_t left;
+  std::size_t asked = 0;
+};
+
+/// A ring that is walked once and a bit, with a chain that drifts to the left all the time.
+struct Ring {
+  explicit Ring(double drift_rad = 0.5 * kDegree) : links(test::drifting_links(truth, drift_rad)) {}
+
+  LoopCluster again(double strength) const { return test::cluster_of(truth, 0, kRingLap, kAgain, strength); }
+
+  /// Says that the far side of the ring is the near one.
+  LoopCluster wrong(double strength) const {
+    const Pose2 far_to_near = truth[3] * inverse(truth[28]);
+    return test::cluster_of(truth, 3, 28, 5, strength, far_to_near);
+  }
+
+  LoopSolution closed(const std::vector<LoopCluster>& clusters, RunObserver& observer, int threads = 1) const {
+    return close_loops(views, links, clusters, {}, {}, threads, observer);
+  }
+  LoopSolution closed(const std::vector<LoopCluster>& clusters, int threads = 1) const {
+    RunObserver nobody;
+    return closed(clusters, nobody, threads);
+  }
+
+  std::vector<Pose2> truth = test::ring_walk(kRingLap + kAgain, 2);
+  test::Views views = test::views_along(test::ring_world(1), truth);
+  std::vector<ChainLink> links;
+};
+
+void expect_same_bits(const LoopSolution& a, const LoopSolution& b) {
+  ASSERT_EQ(a.map_from_node.size(), b.map_from_node.size());
+  for (std::size_t n = 0; n < a.map_from_node.size(); ++n) {
+    EXPECT_THAT(a.map_from_node[n], HasSameBits(b.map_from_node[n])) << n;
+  }
+  EXPECT_EQ(a.link_choice, b.link_choice);
+  EXPECT_EQ(a.accepted, b.accepted);
+  EXPECT_EQ(a.component, b.component);
+  EXPECT_EQ(a.value, b.value);
+}
+
+TEST(CloseLoops, WithoutLoopsLeavesTheChainAsItIs) {
+  const Ring ring;
+  const LoopSolution solution = ring.closed({});
+  EXPECT_THAT(solution.accepted, IsEmpty());
+  EXPECT_THAT(solution.link_choice, Each(0));
+  EXPECT_THAT(solution.component, Each(0));
+  const std::vector<Pose2> chain = test::chained(ring.links);
+  for (std::size_t n = 0; n < chain.size(); ++n) {
+    EXPECT_THAT(solution.map_from_node[n], test::IsNearPose(chain[n], 1e-9, 1e-9));
+  }
+}
+
+TEST(CloseLoops, ClosesARingThatHasDriftedApart) {
+  const Ring ring;
+  ASSERT_GT(test::worst_off_m(test::chained(ring.links), ring.truth), 1.5);
+  const LoopSolution solution = ring.closed({ring.again(12.0)});
+  EXPECT_THAT(solution.accepted, ElementsAre(0));
+  EXPECT_THAT(solution.link_choice, Each(0));
+  EXPECT_THAT(solution.component, Each(0));
+  EXPECT_LT(test::worst_off_m(solution.map_from_node, ring.truth), kGood_m);
+  EXPECT_GT(solution.value, ring.closed({}).value);
+}
+
+TEST(CloseLoops, RefusesALoopThatIsWrongHoweverStrong) {
+  const Ring ring;
+  const LoopSolution alone = ring.closed({ring.wrong(18.0)});
+  EXPECT_THAT(alone.accepted, IsEmpty());
+  EXPECT_EQ(alone.value, ring.closed({}).value);
+  const LoopSolution both = ring.closed({ring.wrong(18.0), ring.again(12.0)});
+  EXPECT_THAT(both.accepted, ElementsAre(1));
+  EXPECT_LT(test::worst_off_m(both.map_from_node, ring.truth), kGood_m);
+}
+
+/// The graph could bear it; the scans speak against it.
+TEST(CloseLoops, RefusesALoopThatPullsScansThatAgreeApart) {
+  Ring ring(0.0);
+  for (ChainLink& link : ring.links) link.alternatives[0].covariance = test::covariance_of(0.3, 10 * kDegree);
+  const auto shifted_by = [&](double shift_m) {
+    return test::cluster_of(ring.truth, 0, kRingLap, kAgain, 12.0, {shift_m, 0.0, 0.0});
+  };
+  EXPECT_THAT(ring.closed({shifted_by(1.2)}).accepted, IsEmpty());
+  EXPECT_THAT(ring.closed({shifted_by(0.0)}).accepted, ElementsAre(0));
+}
+
+TEST(CloseLoops, LeavesAloneWhatIsTooWeak) {
+  const Ring ring;
+  EXPECT_THAT(ring.closed({ring.again(1.0)}).accepted, IsEmpty());
+}
+
+TEST(CloseLoops, TakesTheOtherAlternativeOfALinkThatLoopsContradict) {
+  Ring ring(0.1 * kDegree);
+  constexpr std::size_t kBad = 20;
+  ChainLink& bad = ring.links[kBad];
+  const Pose2 right = bad.alternatives[0].a_from_b;
+  bad.alternatives = {{right * Pose2{0.3, -0.5, 70 * kDegree}, test::covariance_of(0.03, 1 * kDegree), 1.0},
+                      {right, test::covariance_of(0.03, 1 * kDegree), 0.0}};
+  bad.probability = 0.4;
+  const LoopSolution solution = ring.closed({ring.again(12.0)});
+  EXPECT_THAT(solution.accepted, ElementsAre(0));
+  for (std::size_t i = 0; i < ring.links.size(); ++i) EXPECT_EQ(solution.link_choice[i], i == kBad ? 1 : 0) << i;
+  EXPECT_LT(test::worst_off_m(solution.map_from_node, ring.truth), kGood_m);
+}
+
+TEST(CloseLoops, CutsALinkThatIsWrongWithoutAnAlternative) {
+  Ring ring(0.05 * kDegree);
+  constexpr std::size_t kBad = 20;
+  ChainLink& bad = ring.links[kBad];
+  bad.alternatives[0].a_from_b = bad.alternatives[0].a_from_b * Pose2{0.3, -0.5, 70 * kDegree};
+  bad.probability = 0.3;
+  const LoopSolution solution = ring.closed({ring.again(16.0)});
+  EXPECT_THAT(solution.accepted, ElementsAre(0));
+  for (std::size_t i = 0; i < ring.links.size(); ++i) EXPECT_EQ(solution.link_choice[i], i == kBad ? kCut : 0) << i;
+  EXPECT_THAT(solution.component, Each(0)) << "the loop holds what comes after it";
+  EXPECT_LT(test::worst_off_m(solution.map_from_node, ring.truth), 2 * kGood_m);
+}
+
+/// Two walks along the same corridor, or along two of them; nothing tells where the second starts.
+struct TwoWalks {
+  explicit TwoWalks(bool same_world) {
+    const std::vector<Pose2> second = test::ring_walk(12, 6, 2.0);
+    const test::Views more = test::views_along(test::ring_world(same_world ? 1 : 7), second, 50);
+    truth.insert(truth.end(), second.begin(), second.end());
+    views.insert(views.end(), more.begin(), more.end());
+    links = test::drifting_links(truth, 0.2 * kDegree);
+    links[kFirst - 1] = {};
+  }
+
+  LoopSolution closed(const std::vector<LoopCluster>& clusters) const {
+    RunObserver nobody;
+    return close_loops(views, links, clusters, {}, {}, 1, nobody);
+  }
+
+  static constexpr std::size_t kFirst = 16;
+  std::vector<Pose2> truth = test::ring_walk(kFirst, 5);
+  test::Views views = test::views_along(test::ring_world(1), truth);
+  std::vector<ChainLink> links;
+};
+
+TEST(CloseLoops, JoinsTwoPiecesOfOneWorld) {
+  const TwoWalks walks(true);
+  const LoopSolution solution = walks.closed({test::cluster_of(walks.truth, 3, TwoWalks::kFirst, 8, 12.0)});
+  EXPECT_THAT(solution.accepted, ElementsAre(0));
+  EXPECT_THAT(solution.component, Each(0));
+  EXPECT_EQ(solution.link_choice[TwoWalks::kFirst - 1], kCut) << "the log has nothing to say there";
+  EXPECT_LT(test::worst_off_m(solution.map_from_node, walks.truth), kGood_m);
+}
+
+TEST(CloseLoops, KeepsTwoWorldsApart) {
+  const TwoWalks walks(false);
+  const LoopCluster wrong = test::cluster_of(walks.truth, 3, TwoWalks::kFirst, 8, 8.0);
+  for (const LoopSolution& solution : {walks.closed({}), walks.closed({wrong})}) {
+    EXPECT_THAT(solution.accepted, IsEmpty());
+    for (std::size_t n = 0; n < walks.truth.size(); ++n) {
+      EXPECT_EQ(solution.component[n], n < TwoWalks::kFirst ? 0U : TwoWalks::kFirst);
+    }
+    const auto pair = near_pairs(solution.map_from_node, 100.0);
+    for (const auto& [a, b] : pair) EXPECT_EQ(solution.component[a], solution.component[b]) << "far from each other";
+    EXPECT_LT(test::worst_off_m(solution.map_from_node, walks.truth, TwoWalks::kFirst, walks.truth.size()), 1.0);
+  }
+}
+
+TEST(CloseLoops, StoppedAtAnyTimeHasAWholeSolution) {
+  Ring ring;
+  ring.links[20].probability = 0.4;
+  ring.links[20].alternatives.push_back(ring.links[20].alternatives[0]);
+  ring.links[20].alternatives[0].a_from_b.theta_rad += 0.8;
+  const std::vector<LoopCluster> clusters{ring.wrong(14.0), ring.again(12.0)};
+  Patience patient(100000);
+  const LoopSolution whole = ring.closed(clusters, patient);
+  ASSERT_LT(patient.asked, 1000U);
+  double value = -std::numeric_limits<double>::infinity();
+  for (std::size_t times = 0; times <= patient.asked + 1; times += times < 8 ? 1 : 3) {
+    Patience observer(times);
+    const LoopSolution solution = ring.closed(clusters, observer);
+    ASSERT_EQ(solution.map_from_node.size(), ring.truth.size());
+    ASSERT_EQ(solution.link_choice.size(), ring.links.size());
+    ASSERT_EQ(solution.component.size(), ring.truth.size());
+    for (const Pose2& pose : solution.map_from_node) ASSERT_TRUE(std::isfinite(pose.x_m + pose.y_m + pose.theta_rad));
+    for (const std::size_t k : solution.accepted) ASSERT_LT(k, clusters.size());
+    EXPECT_GE(solution.value, value) << "the longer, the better";
+    value = solution.value;
+  }
+  Patience just_enough(patient.asked + 1);
+  expect_same_bits(ring.closed(clusters, just_enough), whole);
+}
+
+TEST(CloseLoops, IsTheSameToTheBitForAnyNumberOfThreads) {
+  const Ring ring;
+  const std::vector<LoopCluster> clusters{ring.wrong(14.0), ring.again(12.0)};
+  expect_same_bits(ring.closed(clusters, 3), ring.closed(clusters, 1));
+}
+
+TEST(CloseLoops, OfOneNodeIsThatNode) {
+  RunObserver nobody;
+  const test::Views views = test::views_along(test::ring_world(1), test::ring_walk(1, 1));
+  const LoopSolution solution = close_loops(views, {}, {}, {}, {}, 1, nobody);
+  ASSERT_EQ(solution.map_from_node.size(), 1U);
+  EXPECT_THAT(solution.map_from_node[0], HasSameBits(Pose2{}));
+  EXPECT_THAT(solution.component, ElementsAre(0));
+}
+
+}  // namespace
+}  // namespace shapemap

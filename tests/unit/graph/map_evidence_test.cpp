@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/graph/map_evidence.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "support/ring_walk.hpp"
+
+namespace shapemap {
+namespace {
+
+using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+Pairs by_all_pairs(const std::vector<Pose2>& poses, double within_m) {
+  Pairs pairs;
+  for (std::size_t b = 0; b < poses.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      if (std::hypot(poses[a].x_m - poses[b].x_m, poses[a].y_m - poses[b].y_m) < within_m) pairs.emplace_back(a, b);
+    }
+  }
+  return pairs;
+}
+
+TEST(NearPairs, AreThoseOfAllPairsThatAreNear) {
+  std::mt19937 rng(1);
+  for (int round = 0; round < 40; ++round) {
+    const double reach_m = 2.0 + 3.0 * round;
+    std::vector<Pose2> poses;
+    for (int i = 0; i < 120; ++i) poses.push_back(test::random_pose(rng, reach_m, kPi));
+    for (const double within_m : {0.7, 5.0, 1000.0}) {
+      EXPECT_EQ(near_pairs(poses, within_m), by_all_pairs(poses, within_m)) << round << " " << within_m;
+    }
+  }
+}
+
+TEST(NearPairs, OnTheBordersOfCellsAreNotLost) {
+  std::vector<Pose2> poses;
+  for (int x = -3; x <= 3; ++x) {
+    for (int y = -3; y <= 3; ++y) poses.push_back({2.0 * x, 2.0 * y, 0.0});
+  }
+  EXPECT_TRUE(near_pairs(poses, 2.0).empty()) << "nearer than, and not as near as";
+  EXPECT_EQ(near_pairs(poses, 2.001), by_all_pairs(poses, 2.001));
+  EXPECT_EQ(near_pairs(poses, 2.001).size(), 2U * 6U * 7U);
+  EXPECT_TRUE(near_pairs({}, 1.0).empty());
+}
+
+TEST(MapEvidence, OfAPairGrowsWithWhatAgreesAndFallsWithWhatIsCrossed) {
+  const auto of = [](double agree, double crossed) {
+    Visibility seen;
+    seen.agree = agree;
+    seen.crossed = crossed;
+    seen.hidden = 1.0 - agree - crossed;
+    return MapEvidence::of_pair(seen);
+  };
+  EXPECT_EQ(MapEvidence::of_pair({}), 0.0);
+  EXPECT_NEAR(of(0.0, 0.0), 0.0, 1e-12) << "neither sees what the other does";
+  EXPECT_GT(of(0.3, 0.0), 0.0);
+  EXPECT_LT(of(0.0, 0.3), 0.0);
+  for (double share = 0.0; share < 0.4; share += 0.1) {
+    EXPECT_GT(of(share + 0.1, 0.2), of(share, 0.2));
+    EXPECT_LT(of(0.2, share + 0.1), of(0.2, share));
+  }
+}
+
+/// Once round, and a few steps more.
+struct Ring {
+  std::vector<Pose2> truth = test::ring_walk(test::kRingLap + 8, 2);
+  test::Views views = test::views_along(test::ring_world(1), truth);
+  MapEvidence evidence{views, {}, 1};
+};
+
+TEST(MapEvidence, IsBestForTheTruthAndWorseTheMoreTheMapIsBent) {
+  Ring ring;
+  double before = ring.evidence.of(ring.truth);
+  EXPECT_GT(before, 0.0);
+  for (const double drift_deg : {0.4, 1.2}) {
+    const std::vector<Pose2> bent = test::chained(test::drifting_links(ring.truth, drift_deg * kDegree));
+    const double value = ring.evidence.of(bent);
+    EXPECT_LT(value, before - 10.0) << drift_deg;
+    before = value;
+  }
+}
+
+TEST(MapEvidence, TellsAgainstTwoPlacesOnTopOfEachOther) {
+  std::mt19937 rng(2);
+  std::vector<Pose2> poses;
+  test::Views views;
+  for (unsigned place = 1; place <= 2; ++place) {
+    const test::World world = test::strange_place(place);
+    for (unsigned k = 0; k < 6; ++k) {
+      poses.push_back(test::random_pose(rng, 0.5, kPi));
+      views.push_back(std::make_shared<ScanView>(test::view_from(world, poses.back(), test::full_circle(), k)));
+    }
+  }
+  std::vector<Pose2> apart = poses;
+  for (std::size_t n = 6; n < 12; ++n) apart[n].x_m += 1000.0;
+  MapEvidence evidence(views, {}, 1);
+  EXPECT_GT(evidence.of(apart), evidence.of(poses) + 10.0);
+}
+
+TEST(MapEvidence, IsNoneWhereNoTwoStretchesMeet) {
+  std::vector<Pose2> straight;
+  for (int k = 0; k < 6; ++k) straight.push_back({7.0 * k, 0.0, 0.0});
+  MapEvidence evidence(test::views_along(test::ring_world(1), test::ring_walk(6, 1)), {}, 1);
+  EXPECT_EQ(evidence.of(straight), 0.0);
+  EXPECT_EQ(MapEvidence({}, {}, 1).of({}), 0.0);
+}
+
+/// Where all are: not how the map lies.
+TEST(MapEvidence, DoesNotDependOnTheFrameOfTheMap) {
+  Ring ring;
+  std::vector<Pose2> elsewhere = ring.truth;
+  for (Pose2& pose : elsewhere) pose = Pose2{3.0, -40.0, 2.0} * pose;
+  const double value = MapEvidence(ring.views, {}, 1).of(ring.truth);
+  EXPECT_NEAR(MapEvidence(ring.views, {}, 1).of(elsewhere), value, 1e-3 * value);
+}
+
+TEST(MapEvidence, ThatRemembersGivesWhatAFreshOneGives) {
+  Ring ring;
+  const std::vector<Pose2> bent = test::chained(test::drifting_links(ring.truth, 1.0 * kDegree), ring.truth[0]);
+  const auto fresh = [&](const std::vector<Pose2>& poses) { return MapEvidence(ring.views, {}, 1).of(poses); };
+  const double of_truth = ring.evidence.of(ring.truth);
+  const double of_bent = ring.evidence.of(bent);
+  EXPECT_EQ(of_truth, fresh(ring.truth));
+  EXPECT_NEAR(of_bent, fresh(bent), 0.05 * std::abs(of_truth - of_bent));
+  EXPECT_NEAR(ring.evidence.of(ring.truth), of_truth, 0.05 * std::abs(of_truth - of_bent));
+}
+
+/// Many small steps are a large one: what is remembered must not creep along.
+TEST(MapEvidence, ThatRemembersDoesNotFallBehind) {
+  Ring ring;
+  std::vector<Pose2> creeping = ring.truth;
+  const double at_first = ring.evidence.of(creeping);
+  for (int step = 0; step < 60; ++step) {
+    for (std::size_t n = test::kRingLap; n < creeping.size(); ++n) creeping[n].y_m += 0.01;
+    ring.evidence.of(creeping);
+  }
+  const double at_last = ring.evidence.of(creeping);
+  EXPECT_LT(at_last, at_first - 20.0);
+  EXPECT_NEAR(at_last, MapEvidence(ring.views, {}, 1).of(creeping), 0.1 * (at_first - at_last));
+}
+
+TEST(MapEvidence, IsTheSameToTheBitForAnyNumberOfThreads) {
+  Ring ring;
+  EXPECT_EQ(MapEvidence(ring.views, {}, 3).of(ring.truth), ring.evidence.of(ring.truth));
+}
+
+}  // namespace
+}  // namespace shapemap
