@@ -71,13 +71,19 @@ bool same_file(const std::string& a, const std::string& b) {
   return full(a) == full(b) || fs::equivalent(a, b, ignored);
 }
 
-void check_outputs(const std::vector<std::string>& paths, const std::string& input, bool force) {
+}  // namespace
+
+void check_distinct(const std::vector<std::string>& paths, const std::string& input) {
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (same_file(paths[i], input)) throw ConfigError("'" + paths[i] + "' is both input and output");
     for (std::size_t j = 0; j < i; ++j) {
       if (same_file(paths[i], paths[j])) throw ConfigError("'" + paths[i] + "' is given for two outputs");
     }
   }
+}
+
+void check_outputs(const std::vector<std::string>& paths, const std::string& input, bool force) {
+  check_distinct(paths, input);
   for (const std::string& path : paths) check_output(path, force);
 }
 

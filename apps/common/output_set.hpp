@@ -12,8 +12,11 @@
 /// The outputs of one run appear together or not at all.
 namespace shapemap::cli {
 
-/// Before the work: whether the outputs could be written. Throws ConfigError when two of them, or one and `input`,
-/// are the same file; OutputError when a folder is missing or closed, or a file exists and `force` is false.
+/// Throws ConfigError when two of `paths`, or one and `input`, are the same file.
+void check_distinct(const std::vector<std::string>& paths, const std::string& input);
+
+/// Before the work: whether the outputs could be written, and are distinct. Throws OutputError when a folder is missing
+/// or closed, or a file exists and `force` is false.
 void check_outputs(const std::vector<std::string>& paths, const std::string& input, bool force);
 
 /// Where nothing can be put in place afterwards: standard output ("-"), a device, a pipe.

@@ -28,6 +28,8 @@ struct MapArguments {
   std::string report_path;
   std::string trace_path;
   std::string fragments_folder;
+  std::string state_path;
+  bool resume = false;  ///< from `state_path`
   bool force = false;
   bool dump_config = false;  ///< print the options and do nothing else
   Verbosity verbosity = Verbosity::kNormal;

@@ -46,6 +46,10 @@ void add_outputs(CLI::App& app, MapArguments& arguments) {
                  "a map and a trajectory of each fragment that nothing ties to the map; example: --fragments apart")
       ->option_text("FOLDER")
       ->group("Output");
+  add("--save-state", arguments.state_path,
+      "what was aligned, as soon as it is, so that a run that was cut short can be resumed; example: --save-state "
+      "run.state");
+  app.add_flag("--resume", arguments.resume, "go on from the file that --save-state names")->group("Output");
   app.add_flag("--force", arguments.force, "replace outputs that exist")->group("Output");
 }
 

@@ -8,6 +8,7 @@
 #include "options_file.hpp"
 #include "run_observer.hpp"
 #include "run_summary.hpp"
+#include "saved_state.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/io/trace_file.hpp"
 #include "shapemap/map/map_log.hpp"
@@ -28,7 +29,9 @@ void require_a_map(const MapArguments& arguments, const MapResult& result) {
 MapResult map_with_progress(const LogSet& logs, const MapArguments& arguments, TraceSink* sink,
                             std::vector<std::string>& warnings) {
   ConsoleObserver observer(arguments.verbosity != Verbosity::kQuiet);
-  MapResult result = map_log(logs.log, arguments.settings.mapping, observer, sink);
+  const std::unique_ptr<AlignmentStoreFile> state = open_state(arguments, logs.log, warnings);
+  print_resumed(arguments, state.get());
+  MapResult result = map_log(logs.log, arguments.settings.mapping, observer, sink, state.get());
   observer.finish();
   if (interrupted() && result.placed().empty()) throw Interrupted();
   if (result.interrupted) print_interrupted(logs, result);
@@ -67,6 +70,7 @@ int run_map(const MapArguments& arguments) {
     return kExitOk;
   }
   check_output_paths(arguments);
+  check_state(arguments);
   const LogSet logs = read_logs(arguments);
   RunCosts costs;
   costs.read_s = total.seconds();

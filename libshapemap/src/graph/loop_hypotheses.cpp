@@ -43,14 +43,23 @@ HypothesisSearchOptions quick(HypothesisSearchOptions search) {
   return search;
 }
 
-std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, const HypothesisSearchOptions& search,
-                                    std::size_t most, double least_probability) {
-  const std::vector<PoseHypothesis> poses = pose_hypotheses(*views[pair.a], *views[pair.b], search);
+/// How pairs are aligned, and what of it is kept.
+struct PairSearch {
+  HypothesisSearchOptions options;
+  SearchKind kind;
+  std::size_t most_poses;  ///< of each pair
+  double least_probability;
+};
+
+std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, const PairSearch& search,
+                                    AlignmentStore* store) {
+  const std::vector<PoseHypothesis> poses =
+      pose_hypotheses(*views[pair.a], *views[pair.b], search.options, {pair.a, pair.b, search.kind}, store);
   std::vector<LoopHypothesis> found;
-  for (std::size_t k = 0; k < std::min(most, poses.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(search.most_poses, poses.size()); ++k) {
     const double margin = k == 0 ? lead_of_first(poses) : poses[k].score - poses[0].score;
     const double p = std::clamp(match_probability(poses[k], margin), 1e-9, 1.0 - 1e-9);
-    if (p < least_probability) continue;
+    if (p < search.least_probability) continue;
     found.push_back(
         {pair.a, pair.b, poses[k].ref_from_query, pose_covariance(poses[k].fit), std::log(p / (1.0 - p))});
   }
@@ -58,16 +67,14 @@ std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, co
 }
 
 std::vector<LoopHypothesis> all_aligned(const NodeViews& views, const std::vector<Pair>& pairs,
-                                        const HypothesisSearchOptions& search, std::size_t most,
-                                        double least_probability, int threads,
-                                        RunObserver& observer) {
+                                        const PairSearch& search, int threads, RunObserver& observer,
+                                        AlignmentStore* store) {
   std::vector<LoopHypothesis> all;
   for (std::size_t first = 0; first < pairs.size(); first += kBlock) {
     if (!observer.keep_going()) throw Interrupted();
     const std::size_t count = std::min(kBlock, pairs.size() - first);
     std::vector<std::vector<LoopHypothesis>> found(count);
-    parallel_for(count, threads,
-                 [&](std::size_t i) { found[i] = aligned(views, pairs[first + i], search, most, least_probability); });
+    parallel_for(count, threads, [&](std::size_t i) { found[i] = aligned(views, pairs[first + i], search, store); });
     for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
     observer.on_progress(first + count, pairs.size());
   }
@@ -77,7 +84,8 @@ std::vector<LoopHypothesis> all_aligned(const NodeViews& views, const std::vecto
 }  // namespace
 
 std::vector<LoopHypothesis> likely_loops(const NodeViews& views, const HypothesisSearchOptions& search,
-                                         const LoopSearchOptions& options, int threads, RunObserver& observer) {
+                                         const LoopSearchOptions& options, int threads, RunObserver& observer,
+                                         AlignmentStore* store) {
   std::vector<PlaceSignature> signatures(views.size());
   parallel_for(views.size(), threads, [&](std::size_t i) { signatures[i] = place_signature(*views[i]); });
   PlaceIndex index;
@@ -93,18 +101,22 @@ std::vector<LoopHypothesis> likely_loops(const NodeViews& views, const Hypothesi
   for (std::size_t b = 0; b < views.size(); ++b) {
     for (const LikelyPlace& place : places[b]) pairs.push_back({place.node, b});
   }
-  return all_aligned(views, pairs, quick(without_all_rotations(search)), kPosesPerPair, options.least_probability, threads, observer);
+  const PairSearch quickly{quick(without_all_rotations(search)), SearchKind::kLoop, kPosesPerPair,
+                           options.least_probability};
+  return all_aligned(views, pairs, quickly, threads, observer, store);
 }
 
 std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<std::size_t>& links,
-                                    const HypothesisSearchOptions& search, int threads, RunObserver& observer) {
+                                    const HypothesisSearchOptions& search, int threads, RunObserver& observer,
+                                    AlignmentStore* store) {
   std::vector<Pair> pairs;
   for (const std::size_t link : links) {
     for (std::size_t a = link + 1 - std::min(kBridgeNodes, link + 1); a <= link; ++a) {
       for (std::size_t b = link + 1; b < std::min(views.size(), link + 1 + kBridgeNodes); ++b) pairs.push_back({a, b});
     }
   }
-  return all_aligned(views, pairs, without_all_rotations(search), kBridgePoses, 0.0, threads, observer);
+  const PairSearch thoroughly{without_all_rotations(search), SearchKind::kBorrowed, kBridgePoses, 0.0};
+  return all_aligned(views, pairs, thoroughly, threads, observer, store);
 }
 
 }  // namespace shapemap

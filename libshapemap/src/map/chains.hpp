@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "shapemap/align/alignment_store.hpp"
 #include "shapemap/core/observer.hpp"
 #include "shapemap/map/mapping_options.hpp"
 #include "shapemap/map/trace_sink.hpp"
 #include "shapemap/map/trajectory.hpp"
 #include "shapemap/scan/scan.hpp"
 
-/// The two ways to map a log. Each fills in positions, fragments and times, and throws Interrupted when the observer asks
-/// to stop; what is in `result` then is whole. `sink` may be null.
+/// The two ways to map a log. Each fills in positions, fragments and times, and throws Interrupted when the observer
+/// asks to stop; what is in `result` then is whole. `sink` and `store` may be null.
 namespace shapemap {
 
 /// The paper's: each scan against the partial map of the few before it.
@@ -17,6 +18,6 @@ void chain_by_paper(const Log& log, const MappingOptions& options, RunObserver& 
 
 /// The robust one: a chain of keyframes, in which places are known again.
 void map_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
-                  MapResult& result);
+                  AlignmentStore* store, MapResult& result);
 
 }  // namespace shapemap

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "chain_smoothing.hpp"
+#include "shapemap/align/alignment_store.hpp"
 #include "shapemap/align/pose_hypothesis.hpp"
 #include "shapemap/core/observer.hpp"
 #include "shapemap/map/mapping_options.hpp"
@@ -43,6 +44,6 @@ struct KeyframeChain {
 /// Each scan against the keyframe before it, with several hypotheses, of which the scans further back decide. Adds an
 /// entry for each position to `result`, without a place. Stops early, with what is whole, when the observer asks to.
 KeyframeChain chain_keyframes(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
-                              MapResult& result);
+                              AlignmentStore* store, MapResult& result);
 
 }  // namespace shapemap

@@ -2,6 +2,7 @@
 #include "keyframe_map.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "shapemap/align/robust_align.hpp"
 #include "shapemap/core/errors.hpp"
@@ -74,12 +75,34 @@ void find_parts(const KeyframeChain& chain, const std::vector<PoseConstraint>& l
   }
 }
 
+/// Knows the alignments of keyframes as those of their positions.
+class KeyframeStore : public AlignmentStore {
+ public:
+  KeyframeStore(const KeyframeChain& chain, AlignmentStore& of_positions)
+      : chain_(chain), of_positions_(of_positions) {}
+
+  std::optional<std::vector<PoseHypothesis>> find(const AlignmentKey& key) override {
+    return of_positions_.find(of_position(key));
+  }
+  void keep(const AlignmentKey& key, const std::vector<PoseHypothesis>& hypotheses) override {
+    of_positions_.keep(of_position(key), hypotheses);
+  }
+
+ private:
+  AlignmentKey of_position(const AlignmentKey& key) const {
+    return {chain_.keyframes[key.reference].position_index, chain_.keyframes[key.query].position_index, key.search};
+  }
+
+  const KeyframeChain& chain_;
+  AlignmentStore& of_positions_;
+};
+
 std::vector<LoopCluster> loop_candidates(const NodeViews& views, const std::vector<ChainLink>& links,
                                          const std::vector<Pose2>& map_from_keyframe, const MappingOptions& options,
-                                         RunObserver& observer) {
+                                         RunObserver& observer, AlignmentStore* store) {
   observer.on_stage("loops");
   std::vector<LoopHypothesis> hypotheses =
-      likely_loops(views, options.robust.search, options.loop_search, options.chain.threads, observer);
+      likely_loops(views, options.robust.search, options.loop_search, options.chain.threads, observer, store);
   std::vector<std::size_t> piece(views.size(), 0);
   std::vector<std::size_t> doubtful;
   for (std::size_t i = 0; i < links.size(); ++i) {
@@ -88,7 +111,7 @@ std::vector<LoopCluster> loop_candidates(const NodeViews& views, const std::vect
   }
   observer.on_stage("doubts");
   const std::vector<LoopHypothesis> around =
-      bridges(views, doubtful, options.robust.search, options.chain.threads, observer);
+      bridges(views, doubtful, options.robust.search, options.chain.threads, observer, store);
   hypotheses.insert(hypotheses.end(), around.begin(), around.end());
   return loop_clusters(hypotheses, map_from_keyframe, piece, {});
 }
@@ -126,14 +149,18 @@ KeyframeMap map_of_chain(const KeyframeChain& chain, const MappingOptions& optio
   return map;
 }
 
-KeyframeMap map_with_loops(const KeyframeChain& chain, const MappingOptions& options, RunObserver& observer) {
+KeyframeMap map_with_loops(const KeyframeChain& chain, const MappingOptions& options, RunObserver& observer,
+                           AlignmentStore* store) {
   KeyframeMap map = map_of_chain(chain, options);
   NodeViews views;
   for (const Keyframe& keyframe : chain.keyframes) views.push_back(keyframe.view);
   std::vector<ChainLink> links;
   for (const KeyframeLink& link : chain.links) links.push_back(chain_link(link, options.robust.confidence));
 
-  const std::vector<LoopCluster> clusters = loop_candidates(views, links, map.map_from_keyframe, options, observer);
+  std::optional<KeyframeStore> of_keyframes;
+  if (store) of_keyframes.emplace(chain, *store);
+  const std::vector<LoopCluster> clusters =
+      loop_candidates(views, links, map.map_from_keyframe, options, observer, of_keyframes ? &*of_keyframes : nullptr);
   observer.on_stage("whole map");
   const LoopSolution solution = close_loops(views, links, clusters, options.robust.search.visibility,
                                             options.loop_closing, options.chain.threads, observer);

@@ -22,6 +22,7 @@ KeyframeMap map_of_chain(const KeyframeChain& chain, const MappingOptions& optio
 
 /// The chain with its loops closed, and all scans aligned to all that see the same. When the observer asks to stop, with
 /// the loops that are closed by then.
-KeyframeMap map_with_loops(const KeyframeChain& chain, const MappingOptions& options, RunObserver& observer);
+KeyframeMap map_with_loops(const KeyframeChain& chain, const MappingOptions& options, RunObserver& observer,
+                           AlignmentStore* store);
 
 }  // namespace shapemap

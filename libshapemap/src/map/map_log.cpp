@@ -30,12 +30,16 @@ std::string MapResult::why_not_in_map(const PositionResult& position) const {
          ", which nothing ties to the map";
 }
 
-MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink) {
+MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
+                  AlignmentStore* store) {
   validate_all(options);
   MapResult result;
-  const auto map = options.chain.method == Method::kPaper ? chain_by_paper : map_robustly;
   try {
-    map(log, options, observer, sink, result);
+    if (options.chain.method == Method::kPaper) {
+      chain_by_paper(log, options, observer, sink, result);
+    } else {
+      map_robustly(log, options, observer, sink, store, result);
+    }
   } catch (const Interrupted&) {
     result.interrupted = true;
   }

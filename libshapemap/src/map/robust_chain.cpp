@@ -32,8 +32,15 @@ double companion_score(const Visibility& v) {
 
 class RobustChain {
  public:
-  RobustChain(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink, MapResult& result)
-      : log_(log), options_(options), observer_(observer), sink_(sink), result_(result), tracker_(options) {}
+  RobustChain(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
+              AlignmentStore* store, MapResult& result)
+      : log_(log),
+        options_(options),
+        observer_(observer),
+        sink_(sink),
+        store_(store),
+        result_(result),
+        tracker_(options) {}
 
   KeyframeChain run() {
     observer_.on_stage("chain");
@@ -117,7 +124,7 @@ class RobustChain {
     result_.times.align_s += timed_for(count, [&](std::size_t i) {
       const std::size_t link = first + i - 1;
       if (starts_log(position_of(link), position_of(link + 1))) return;
-      hypotheses(link) = pose_hypotheses(view_of_keyframe(link), view_of_keyframe(link + 1), options_.robust.search);
+      hypotheses(link) = aligned(link, link + 1, SearchKind::kFull, options_.robust.search);
     });
     std::vector<std::vector<PoseHypothesis>> borrowed(count);
     result_.times.align_s += timed_for(count, [&](std::size_t i) { borrowed[i] = borrow_hypotheses(first + i - 1); });
@@ -142,6 +149,12 @@ class RobustChain {
   const ScanView& view_of_keyframe(std::size_t i) const { return *chain_.keyframes[i].view; }
   std::size_t position_of(std::size_t keyframe) const { return chain_.keyframes[keyframe].position_index; }
 
+  std::vector<PoseHypothesis> aligned(std::size_t reference, std::size_t query, SearchKind search,
+                                      const HypothesisSearchOptions& options) const {
+    return pose_hypotheses(view_of_keyframe(reference), view_of_keyframe(query), options,
+                           {position_of(reference), position_of(query), search}, store_);
+  }
+
   /// When a link is in doubt: what scans further back say about it, by way of the best links between.
   std::vector<PoseHypothesis> borrow_hypotheses(std::size_t link) const {
     std::vector<PoseHypothesis> borrowed;
@@ -155,8 +168,7 @@ class RobustChain {
     for (std::size_t back = 1; back <= static_cast<std::size_t>(options_.smoothing.more_references); ++back) {
       if (link < back || hypotheses(link - back).empty()) break;
       far_from_reference = hypotheses(link - back).front().ref_from_query * far_from_reference;
-      const ScanView& far = view_of_keyframe(link - back);
-      const std::vector<PoseHypothesis> seen_from_far = pose_hypotheses(far, query, quick);
+      const std::vector<PoseHypothesis> seen_from_far = aligned(link - back, link + 1, SearchKind::kBorrowed, quick);
       for (std::size_t k = 0; k < std::min(kBorrowed, seen_from_far.size()); ++k) {
         const Pose2 ref_from_query = inverse(far_from_reference) * seen_from_far[k].ref_from_query;
         if (ref_from_query.translation().lpNorm<Eigen::Infinity>() > limit_m) continue;
@@ -189,6 +201,7 @@ class RobustChain {
   const MappingOptions& options_;
   RunObserver& observer_;
   TraceSink* sink_;
+  AlignmentStore* store_;
   MapResult& result_;
   KeyframeTracker tracker_;
   std::size_t last_seen_ = 0;  ///< the last position with shape
@@ -199,8 +212,8 @@ class RobustChain {
 }  // namespace
 
 KeyframeChain chain_keyframes(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
-                              MapResult& result) {
-  return RobustChain(log, options, observer, sink, result).run();
+                              AlignmentStore* store, MapResult& result) {
+  return RobustChain(log, options, observer, sink, store, result).run();
 }
 
 }  // namespace shapemap

@@ -100,10 +100,11 @@ class Placing {
   std::map<std::size_t, int> fragment_of_component_;
 };
 
-KeyframeMap map_of(const KeyframeChain& chain, const MappingOptions& options, RunObserver& observer) {
+KeyframeMap map_of(const KeyframeChain& chain, const MappingOptions& options, RunObserver& observer,
+                   AlignmentStore* store) {
   if (!options.loops.close_loops) return map_of_chain(chain, options);
   try {
-    return map_with_loops(chain, options, observer);
+    return map_with_loops(chain, options, observer, store);
   } catch (const Interrupted&) {
     return map_of_chain(chain, options);
   }
@@ -112,10 +113,10 @@ KeyframeMap map_of(const KeyframeChain& chain, const MappingOptions& options, Ru
 }  // namespace
 
 void map_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
-                  MapResult& result) {
-  const KeyframeChain chain = chain_keyframes(log, options, observer, sink, result);
+                  AlignmentStore* store, MapResult& result) {
+  const KeyframeChain chain = chain_keyframes(log, options, observer, sink, store, result);
   const auto start = std::chrono::steady_clock::now();
-  KeyframeMap map = map_of(chain, options, observer);
+  KeyframeMap map = map_of(chain, options, observer, store);
   result.times.loops_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.loops = std::move(map.loops);
   Placing(log, chain, map, options, sink, result).run();

@@ -24,7 +24,8 @@ struct Blurred {
   }
 
   std::vector<Pose2> refined(const RefinementOptions& options, int threads = 1) const {
-    return refine_map(views, poses, chain, {}, options, threads);
+    RunObserver observer;
+    return refine_map(views, poses, chain, {}, options, threads, observer);
   }
 
   std::vector<Pose2> truth = test::ring_walk(25, 2);

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "shapemap/align/pose_hypothesis.hpp"
+#include "shapemap/align/alignment_store.hpp"
 #include "shapemap/core/observer.hpp"
 #include "shapemap/core/options.hpp"
 #include "shapemap/graph/loop_clusters.hpp"
@@ -36,11 +36,14 @@ struct LoopSearchOptions {
 using NodeViews = std::vector<std::shared_ptr<const ScanView>>;
 
 /// Each node, aligned to the earlier ones that look most alike. Throws Interrupted when the observer asks to stop.
+/// `store`, by the numbers of the nodes, may be null.
 std::vector<LoopHypothesis> likely_loops(const NodeViews& views, const HypothesisSearchOptions& search,
-                                         const LoopSearchOptions& options, int threads, RunObserver& observer);
+                                         const LoopSearchOptions& options, int threads, RunObserver& observer,
+                                         AlignmentStore* store = nullptr);
 
 /// The few nodes before and after each of `links` (node i to node i + 1), all aligned to each other.
 std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<std::size_t>& links,
-                                    const HypothesisSearchOptions& search, int threads, RunObserver& observer);
+                                    const HypothesisSearchOptions& search, int threads, RunObserver& observer,
+                                    AlignmentStore* store = nullptr);
 
 }  // namespace shapemap

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "shapemap/align/alignment_store.hpp"
 #include "shapemap/core/observer.hpp"
 #include "shapemap/map/mapping_options.hpp"
 #include "shapemap/map/trace_sink.hpp"
@@ -11,8 +12,9 @@ namespace shapemap {
 
 /// The main job: a pose for every position of `log` that can be aligned to the ones before it, from ranges alone.
 /// A position that cannot be aligned starts a new fragment. Same input and options give the same bits for any
-/// number of threads, with or without a `sink` that looks on. Throws ConfigError for bad options; never throws for
-/// scans that do not match.
-MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink = nullptr);
+/// number of threads, with or without a `sink` that looks on. The robust method asks `store` for alignments, and gives
+/// it those that it makes. Throws ConfigError for bad options; never throws for scans that do not match.
+MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink = nullptr,
+                  AlignmentStore* store = nullptr);
 
 }  // namespace shapemap
