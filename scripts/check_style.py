@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatch
 from pathlib import Path
 
-STAGES = ("core", "scan", "shape", "match", "align", "graph", "map", "io")  # a stage includes only itself and those before it
+# A stage includes only itself and those before it.
+STAGES = ("core", "scan", "shape", "match", "align", "graph", "map", "io")
 FOLDERS = (".ci", "apps", "cmake", "libshapemap", "python", "scripts", "tests")
 SUFFIXES = (".cmake", ".cpp", ".hpp", ".in", ".py", ".sh")
 CPP_SUFFIXES = (".cpp", ".hpp", ".hpp.in")

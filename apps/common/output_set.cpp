@@ -71,8 +71,6 @@ bool same_file(const std::string& a, const std::string& b) {
   return full(a) == full(b) || fs::equivalent(a, b, ignored);
 }
 
-}  // namespace
-
 void check_distinct(const std::vector<std::string>& paths, const std::string& input) {
   for (std::size_t i = 0; i < paths.size(); ++i) {
     if (same_file(paths[i], input)) throw ConfigError("'" + paths[i] + "' is both input and output");

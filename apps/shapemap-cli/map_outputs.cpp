@@ -49,7 +49,7 @@ std::vector<std::pair<const char*, std::string>> per_log_outputs(const MapArgume
   return given;
 }
 
-void check_output_paths(const MapArguments& arguments) {
+std::vector<std::string> output_paths(const MapArguments& arguments) {
   std::vector<std::string> paths{arguments.map_path, ros_yaml_path(arguments.map_path)};
   for (const std::string& path : {arguments.report_path, arguments.trace_path}) {
     if (!path.empty()) paths.push_back(path);
@@ -57,6 +57,11 @@ void check_output_paths(const MapArguments& arguments) {
   for (const auto& [option, path] : per_log_outputs(arguments)) {
     for (std::string& one : per_log_paths(path, arguments.logs)) paths.push_back(std::move(one));
   }
+  return paths;
+}
+
+void check_output_paths(const MapArguments& arguments) {
+  std::vector<std::string> paths = output_paths(arguments);
   for (const LogSource& log : arguments.logs) check_outputs(paths, log.path, arguments.force);
   if (arguments.fragments_folder.empty()) return;
   for (const LogSource& log : arguments.logs) paths.push_back(log.path);

@@ -14,6 +14,9 @@ namespace shapemap::cli {
 /// What was asked for that each log gets for itself: the option and its path.
 std::vector<std::pair<const char*, std::string>> per_log_outputs(const MapArguments& arguments);
 
+/// All files of a run with `arguments`, but for those of --fragments and --save-state.
+std::vector<std::string> output_paths(const MapArguments& arguments);
+
 /// Whether all that a run with `arguments` writes could be written. Throws ConfigError and OutputError.
 void check_output_paths(const MapArguments& arguments);
 

@@ -28,7 +28,7 @@ void check_state(const MapArguments& arguments) {
   if (path == "-" || is_stream) throw OutputError("cannot write '" + path + "': the state needs a file");
   std::vector<std::string> paths = output_paths(arguments);
   paths.push_back(path);
-  check_distinct(paths, arguments.log_path);
+  for (const LogSource& log : arguments.logs) check_distinct(paths, log.path);
   if (arguments.resume) {
     if (!fs::exists(status)) throw InputError("there is no state '" + path + "' to resume");
     return;
@@ -36,7 +36,7 @@ void check_state(const MapArguments& arguments) {
   if (fs::is_regular_file(status) && !arguments.force) {
     throw OutputError("'" + path + "' exists already; --resume goes on from it, --force begins anew");
   }
-  check_outputs({path}, arguments.log_path, arguments.force);
+  for (const LogSource& log : arguments.logs) check_outputs({path}, log.path, arguments.force);
 }
 
 std::unique_ptr<AlignmentStoreFile> open_state(const MapArguments& arguments, const Log& log,

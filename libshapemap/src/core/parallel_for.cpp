@@ -23,8 +23,8 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
     }
   };
   std::vector<std::thread> helpers;
-  const auto wanted = threads > 0 ? static_cast<std::size_t>(threads)
-                                  : std::max<std::size_t>(1, std::thread::hardware_concurrency());
+  const auto wanted =
+      threads > 0 ? static_cast<std::size_t>(threads) : std::max<std::size_t>(1, std::thread::hardware_concurrency());
   const std::size_t num_helpers = std::min(count, wanted) - (count > 0 ? 1 : 0);
   for (std::size_t t = 0; t < num_helpers; ++t) helpers.emplace_back(take_work);
   take_work();

@@ -123,8 +123,7 @@ double LoopProblem::cost_of_links(const LoopChoice& choice) const {
       const auto taken = static_cast<std::size_t>(choice.link_choice[i]);
       cost += link.alternatives.front().score - link.alternatives[taken].score;
     }
-    const double step_m =
-        (choice.map_from_node[i].translation() - choice.map_from_node[i + 1].translation()).norm();
+    const double step_m = (choice.map_from_node[i].translation() - choice.map_from_node[i + 1].translation()).norm();
     const double steps = std::min(step_m / usual_step_m_ - 1.0, 10.0);
     cost += options_.step_penalty * std::max(0.0, steps);
   }

@@ -60,8 +60,7 @@ std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, co
     const double margin = k == 0 ? lead_of_first(poses) : poses[k].score - poses[0].score;
     const double p = std::clamp(match_probability(poses[k], margin), 1e-9, 1.0 - 1e-9);
     if (p < search.least_probability) continue;
-    found.push_back(
-        {pair.a, pair.b, poses[k].ref_from_query, pose_covariance(poses[k].fit), std::log(p / (1.0 - p))});
+    found.push_back({pair.a, pair.b, poses[k].ref_from_query, pose_covariance(poses[k].fit), std::log(p / (1.0 - p))});
   }
   return found;
 }

@@ -27,9 +27,9 @@ class KeyframeTracker {
 
   const MappingOptions& options_;
   std::shared_ptr<const ScanView> keyframe_;
-  Pose2 last_;              ///< of the scan before, in the frame of the keyframe
-  Pose2 step_;              ///< to it from the one before
-  double attached_ = 0.0;   ///< share of the recent scans that a keyframe stood for
+  Pose2 last_;             ///< of the scan before, in the frame of the keyframe
+  Pose2 step_;             ///< to it from the one before
+  double attached_ = 0.0;  ///< share of the recent scans that a keyframe stood for
 };
 
 }  // namespace shapemap

@@ -11,7 +11,8 @@
 namespace shapemap {
 
 /// How often surfaces of a scan lie how far from each other, and turned how against each other and against the line
-/// between them: nothing of that changes when the scan is turned or shifted. The square root of the counts, of length 1.
+/// between them: nothing of that changes when the scan is turned or shifted. The square root of the counts, of
+/// length 1.
 inline constexpr std::size_t kSignatureDistances = 12;
 inline constexpr std::size_t kSignatureAngles = 8;
 inline constexpr std::size_t kSignatureBins = kSignatureDistances * kSignatureAngles * kSignatureAngles;

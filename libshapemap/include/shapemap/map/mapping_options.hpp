@@ -30,8 +30,8 @@ struct KeyframeOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit(Field{"keyframe-step-m", "a scan nearer than this to a keyframe needs none of its own [m]; 0: each has its own",
-                0, 10},
+    visit(Field{"keyframe-step-m",
+                "a scan nearer than this to a keyframe needs none of its own [m]; 0: each has its own", 0, 10},
           self.step_m);
     visit(Field{"keyframe-turn-deg", "unless it is turned by more [deg]", 0, 180, kDegree}, self.turn_rad);
   }
@@ -75,7 +75,8 @@ struct ChainOptions {
     visit(Field{"method", "how scans are aligned"}, self.method);
     visit(Field{"target-scans", "previous scans that make the target of the paper's method", 1, 100},
           self.target_scans);
-    visit(Field{"threads", "worker threads, 0: one per processor; the result does not depend on it", 0, 256}, self.threads);
+    visit(Field{"threads", "worker threads, 0: one per processor; the result does not depend on it", 0, 256},
+          self.threads);
     visit(Field{"seed", "seed of everything random; neither method draws anything", 0, 2147483647}, self.seed);
   }
 };
