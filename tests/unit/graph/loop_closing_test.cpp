@@ -170,7 +170,7 @@ struct TwoWalks {
 
 TEST(CloseLoops, JoinsTwoPiecesOfOneWorld) {
   const TwoWalks walks(true);
-  const LoopSolution solution = walks.closed({test::cluster_of(walks.truth, 3, TwoWalks::kFirst, 8, 12.0)});
+  const LoopSolution solution = walks.closed({test::cluster_of(walks.truth, 3, TwoWalks::kFirst, 8, 24.0)});
   EXPECT_THAT(solution.accepted, ElementsAre(0));
   EXPECT_THAT(solution.component, Each(0));
   EXPECT_EQ(solution.link_choice[TwoWalks::kFirst - 1], kCut) << "the log has nothing to say there";
@@ -189,6 +189,23 @@ TEST(CloseLoops, KeepsTwoWorldsApart) {
     for (const auto& [a, b] : pair) EXPECT_EQ(solution.component[a], solution.component[b]) << "far from each other";
     EXPECT_LT(test::worst_off_m(solution.map_from_node, walks.truth, TwoWalks::kFirst, walks.truth.size()), 1.0);
   }
+}
+
+TEST(CloseLoops, DoesNotJoinPiecesByAWeakLoop) {
+  const TwoWalks walks(true);
+  const LoopCluster weak = test::cluster_of(walks.truth, 3, TwoWalks::kFirst, 8, 12.0);
+  EXPECT_THAT(walks.closed({weak}).accepted, IsEmpty());
+}
+
+TEST(CloseLoops, DoesNotJoinPiecesThatTwoLoopsWouldJoinDifferently) {
+  const TwoWalks walks(true);
+  LoopCluster right = test::cluster_of(walks.truth, 3, TwoWalks::kFirst, 8, 24.0);
+  LoopCluster rival = right;
+  for (LoopHypothesis& member : rival.members) member.a_from_b = member.a_from_b * Pose2{0.0, 0.0, kPi};
+  rival.strength = 11.0;
+  EXPECT_THAT(walks.closed({right, rival}).accepted, ElementsAre(0)) << "less than half as strong";
+  rival.strength = 20.0;
+  EXPECT_THAT(walks.closed({right, rival}).accepted, IsEmpty());
 }
 
 TEST(CloseLoops, StoppedAtAnyTimeHasAWholeSolution) {

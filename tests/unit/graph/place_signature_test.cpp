@@ -135,11 +135,19 @@ std::vector<LikelyPlace> by_full_sort(const std::vector<PlaceSignature>& signatu
   }
   std::stable_sort(places.begin(), places.end(),
                    [](const LikelyPlace& a, const LikelyPlace& b) { return a.likeness > b.likeness; });
-  places.resize(std::min(count, places.size()));
-  return places;
+  std::vector<LikelyPlace> kept;
+  std::vector<bool> taken(end + 2, false);  // shifted by one
+  for (const LikelyPlace& place : places) {
+    const std::size_t at = place.node + 1;
+    const bool beside = taken[at - 1] || taken[at] || (at + 1 < taken.size() && taken[at + 1]);
+    if (beside || kept.size() == count) continue;
+    taken[at] = true;
+    kept.push_back(place);
+  }
+  return kept;
 }
 
-TEST(PlaceIndex, FindsTheFirstOfAFullSort) {
+TEST(PlaceIndex, FindsTheFirstOfAFullSortAndOfNeighboursTheBetter) {
   std::mt19937 rng(3);
   constexpr std::size_t kCount = 60;
   std::vector<PlaceSignature> signatures;
