@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "chain_smoothing.hpp"
@@ -20,6 +21,7 @@ namespace shapemap {
 struct Keyframe {
   std::size_t position_index = 0;
   std::shared_ptr<const ScanView> view;
+  std::optional<Pose2> expected;  ///< in the frame of the keyframe before; see KeyframeTracker::expected()
 };
 
 /// A scan that a keyframe stands for: taken from nearly the same place.

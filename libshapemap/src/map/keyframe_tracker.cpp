@@ -41,7 +41,9 @@ void KeyframeTracker::start(std::shared_ptr<const ScanView> keyframe) {
 }
 
 std::optional<PoseHypothesis> KeyframeTracker::follow(const ScanView& view) {
+  expected_.reset();
   if (!keyframe_ || options_.keyframes.step_m <= 0.0) return std::nullopt;
+  if (attached_ > kDense) expected_ = last_ * step_;
   std::optional<PoseHypothesis> pose = followed(view);
   if (!pose && attached_ > kDense) pose = searched(view);
   if (!pose || !is_small(pose->ref_from_query, options_.keyframes.step_m, options_.keyframes.turn_rad)) {

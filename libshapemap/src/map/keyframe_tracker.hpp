@@ -21,14 +21,19 @@ class KeyframeTracker {
   /// The pose of a scan that the keyframe can stand for, in its frame.
   std::optional<PoseHypothesis> follow(const ScanView& view);
 
+  /// Where the scan last asked about was to be expected, in the frame of the keyframe then: only where scans follow
+  /// each other closely.
+  const std::optional<Pose2>& expected() const { return expected_; }
+
  private:
   std::optional<PoseHypothesis> followed(const ScanView& view) const;
   std::optional<PoseHypothesis> searched(const ScanView& view) const;
 
   const MappingOptions& options_;
   std::shared_ptr<const ScanView> keyframe_;
-  Pose2 last_;             ///< of the scan before, in the frame of the keyframe
-  Pose2 step_;             ///< to it from the one before
+  Pose2 last_;  ///< of the scan before, in the frame of the keyframe
+  Pose2 step_;  ///< to it from the one before
+  std::optional<Pose2> expected_;
   double attached_ = 0.0;  ///< share of the recent scans that a keyframe stood for
 };
 

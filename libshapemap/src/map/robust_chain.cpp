@@ -30,6 +30,16 @@ double companion_score(const Visibility& v) {
   return 3.0 * std::log(0.2 + v.agree / total) - 1.5 * std::log(0.1 + v.crossed / total);
 }
 
+/// As logarithm of odds, of a scan that is so far off where it was expected.
+double surprise(const Pose2& off) {
+  constexpr double kUsual_m = 0.4;
+  constexpr double kUsual_rad = 25 * kDegree;
+  constexpr double kMost = 4.0;
+  const double far = std::max(0.0, off.translation().norm() / kUsual_m - 1.0);
+  const double turned = std::max(0.0, std::abs(off.theta_rad) / kUsual_rad - 1.0);
+  return std::min(kMost, 2.0 * far) + std::min(kMost, 2.0 * turned);
+}
+
 class RobustChain {
  public:
   RobustChain(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
@@ -103,7 +113,7 @@ class RobustChain {
       chain_.attached.push_back({position_index, chain_.keyframes.size() - 1, *pose});
       return;
     }
-    chain_.keyframes.push_back({position_index, view});
+    chain_.keyframes.push_back({position_index, view, tracker_.expected()});
     tracker_.start(view);
   }
 
@@ -132,6 +142,7 @@ class RobustChain {
       std::vector<PoseHypothesis>& link = hypotheses(first + i - 1);
       const std::size_t num_own = link.size();
       for (const PoseHypothesis& pose : borrowed[i]) add_if_new(pose, link);
+      if (chain_.keyframes[first + i].expected) expect(*chain_.keyframes[first + i].expected, first + i - 1);
       if (sink_) sink_->on_link({position_of(first + i - 1), position_of(first + i), link, num_own});
       for (const PoseHypothesis& pose : link) choices_.scores[first + i - 1].push_back(pose.score);
       if (link.empty()) choices_.scores[first + i - 1].push_back(0.0);
@@ -142,6 +153,17 @@ class RobustChain {
     if (options_.loops.close_loops) return;
     const std::size_t needed = static_cast<std::size_t>(options_.smoothing.more_references) + 2;
     for (std::size_t i = 0; i + needed < chain_.keyframes.size(); ++i) chain_.keyframes[i].view.reset();
+  }
+
+  /// Where scans follow each other closely, hypotheses far from where the next was to be expected are less likely.
+  void expect(const Pose2& ref_from_query, std::size_t link) {
+    std::vector<PoseHypothesis>& found = hypotheses(link);
+    add_if_new(
+        refined_hypothesis(view_of_keyframe(link), view_of_keyframe(link + 1), ref_from_query, options_.robust.search),
+        found);
+    for (PoseHypothesis& pose : found) pose.score -= surprise(inverse(ref_from_query) * pose.ref_from_query);
+    std::stable_sort(found.begin(), found.end(),
+                     [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.score > b.score; });
   }
 
   std::vector<PoseHypothesis>& hypotheses(std::size_t link) { return chain_.links[link].hypotheses; }
