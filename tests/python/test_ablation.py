@@ -15,7 +15,7 @@ def test_a_row_is_the_mean_over_the_logs_for_each_stride(monkeypatch, tmp_path):
     monkeypatch.setattr(ablation, "score_log", score)
     line = ablation.row("less", ["--vote-peaks", "1"], [tmp_path / "a", tmp_path / "b"], tmp_path / "cli")
     assert line == "| less | 95.00 % | 90.00 % | 85.00 % | 10.0 ms |"
-    assert asked[0] == ("a", 1, ["--method", "robust", "--vote-peaks", "1"])
+    assert asked[0] == ("a", 1, [*ablation.CHAIN_ALONE, "--vote-peaks", "1"])
 
 
 def test_a_log_that_is_missing_is_an_error(capsys, tmp_path):
