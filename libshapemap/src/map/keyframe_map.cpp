@@ -2,6 +2,7 @@
 #include "keyframe_map.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "shapemap/align/robust_align.hpp"
@@ -128,6 +129,15 @@ std::vector<PoseConstraint> loop_constraints(const std::vector<LoopCluster>& clu
   return constraints;
 }
 
+/// Whether the map is at all what a loop says: robust losses let all others outvote one that is wrong.
+bool is_closed(const LoopCluster& cluster, const std::vector<Pose2>& map_from_keyframe) {
+  constexpr double kFarOff_m = 1.0;
+  constexpr double kFarOff_rad = 10 * kDegree;
+  const LoopHypothesis& best = cluster.members.front();
+  const Pose2 off = inverse(best.a_from_b) * (inverse(map_from_keyframe[best.a]) * map_from_keyframe[best.b]);
+  return off.translation().norm() < kFarOff_m && std::abs(off.theta_rad) < kFarOff_rad;
+}
+
 ClosedLoop closed_loop(const KeyframeChain& chain, const LoopCluster& cluster) {
   const LoopHypothesis& best = cluster.members.front();
   return {chain.keyframes[best.a].position_index, chain.keyframes[best.b].position_index, best.a_from_b,
@@ -175,7 +185,9 @@ KeyframeMap map_with_loops(const KeyframeChain& chain, const MappingOptions& opt
   known.insert(known.end(), loops.begin(), loops.end());
   map.map_from_keyframe = refine_map(views, solution.map_from_node, known, options.robust.search, options.refinement,
                                      options.chain.threads, observer);
-  for (const std::size_t k : solution.accepted) map.loops.push_back(closed_loop(chain, clusters[k]));
+  for (const std::size_t k : solution.accepted) {
+    if (is_closed(clusters[k], map.map_from_keyframe)) map.loops.push_back(closed_loop(chain, clusters[k]));
+  }
   return map;
 }
 
