@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "step_lengths.hpp"
+
 namespace shapemap {
 namespace {
 
@@ -18,24 +20,13 @@ constexpr double kApart_m = 1e4;
 /// The chain's probabilities allow for scans of different places, which neighbours are not.
 constexpr double kPriorOfLinks = 2.0;
 
+/// The chain took its neighbours into account as well.
+constexpr double kAgainstChain = 3.0;
+
 /// Pairs of scans do not tell independently of each other.
 constexpr double kEvidenceWeight = 0.5;
 
-constexpr double kSure = 0.9;
-constexpr double kLeastStep_m = 0.3;
-
-/// Nineteen of twenty sure steps are shorter.
-double usual_step_m(const std::vector<ChainLink>& links) {
-  std::vector<double> steps_m;
-  for (const ChainLink& link : links) {
-    if (link.exists() && link.probability > kSure) {
-      steps_m.push_back(link.alternatives.front().a_from_b.translation().norm());
-    }
-  }
-  if (steps_m.empty()) return kLeastStep_m;
-  std::sort(steps_m.begin(), steps_m.end());
-  return std::max(kLeastStep_m, steps_m[steps_m.size() * 95 / 100]);
-}
+bool agrees(const Pose2& off) { return off.translation().norm() < kAgrees_m && std::abs(off.theta_rad) < kAgrees_rad; }
 
 /// The best member of each node.
 std::vector<PoseConstraint> constraints_of(const LoopCluster& cluster) {
@@ -86,6 +77,29 @@ LoopChoice LoopProblem::chain_alone() {
   return choice;
 }
 
+LoopChoice LoopProblem::of_map(std::vector<Pose2> map_from_node) {
+  LoopChoice choice;
+  choice.link_choice.assign(links_.size(), kCut);
+  choice.accepted.assign(clusters_.size(), 0);
+  choice.refused_off.assign(clusters_.size(), Pose2{kApart_m, kApart_m, 0.0});
+  choice.map_from_node = std::move(map_from_node);
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Pose2 taken = inverse(choice.map_from_node[i]) * choice.map_from_node[i + 1];
+    for (std::size_t k = 0; k < links_[i].alternatives.size() && choice.link_choice[i] == kCut; ++k) {
+      if (agrees(inverse(links_[i].alternatives[k].a_from_b) * taken)) choice.link_choice[i] = static_cast<int>(k);
+    }
+  }
+  for (std::size_t k = 0; k < clusters_.size(); ++k) choice.accepted[k] = agrees(off(choice, k)) ? 1 : 0;
+  for (std::size_t i = 0; i < links_.size(); ++i) {  // what nothing else joins stays with the chain
+    if (choice.link_choice[i] != kCut || !links_[i].exists()) continue;
+    const std::vector<std::size_t> part = connected_parts(num_nodes_, constraints(choice));
+    if (part[i] != part[i + 1]) choice.link_choice[i] = 0;
+  }
+  solve(choice);
+  rate(choice);
+  return choice;
+}
+
 std::vector<PoseConstraint> LoopProblem::constraints(const LoopChoice& choice) const {
   std::vector<PoseConstraint> all;
   for (std::size_t i = 0; i < links_.size(); ++i) {
@@ -121,7 +135,7 @@ double LoopProblem::cost_of_links(const LoopChoice& choice) const {
       cost += std::max(0.0, std::log(p / (1.0 - p)) + kPriorOfLinks);
     } else {
       const auto taken = static_cast<std::size_t>(choice.link_choice[i]);
-      cost += link.alternatives.front().score - link.alternatives[taken].score;
+      cost += link.alternatives.front().score - link.alternatives[taken].score + (taken == 0 ? 0.0 : kAgainstChain);
     }
     const double step_m = (choice.map_from_node[i].translation() - choice.map_from_node[i + 1].translation()).norm();
     const double steps = std::min(step_m / usual_step_m_ - 1.0, 10.0);

@@ -11,6 +11,10 @@
 
 namespace shapemap {
 
+/// A map that is nearer than this to what a loop or a link says agrees with it.
+inline constexpr double kAgrees_m = 0.35;
+inline constexpr double kAgrees_rad = 4 * kDegree;
+
 /// What has been decided about loops and links, and the map that follows.
 struct LoopChoice {
   std::vector<int> link_choice;
@@ -30,6 +34,8 @@ class LoopProblem {
 
   /// The chain by itself, without loops. Pieces that nothing joins lie far apart.
   LoopChoice chain_alone();
+  /// The alternatives that a map takes, and the loops that it closes.
+  LoopChoice of_map(std::vector<Pose2> map_from_node);
 
   /// Poses from the choices made, starting from those there are.
   void solve(LoopChoice& choice) const;
@@ -43,6 +49,7 @@ class LoopProblem {
   /// What closing a loop is worth by itself.
   double worth(std::size_t cluster) const;
 
+  MapEvidence& evidence() { return evidence_; }
   std::size_t num_nodes() const { return num_nodes_; }
 
  private:

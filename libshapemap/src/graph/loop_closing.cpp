@@ -5,13 +5,10 @@
 #include <cmath>
 
 #include "loop_choice.hpp"
+#include "map_assembly.hpp"
 
 namespace shapemap {
 namespace {
-
-/// A map that is nearer than this to what a loop says agrees with it.
-constexpr double kAgrees_m = 0.35;
-constexpr double kAgrees_rad = 4 * kDegree;
 
 /// And one that is farther off contradicts it.
 constexpr double kContradicts_m = 1.0;
@@ -20,6 +17,10 @@ constexpr double kContradicts_rad = 10 * kDegree;
 constexpr double kLeastStrength = 4.0;
 constexpr double kStrong = 10.0;
 constexpr double kVeryDoubtful = 0.65;
+/// No more maps are assembled when so many in a row are not better by this share.
+constexpr int kAssembliesInVain = 4;
+constexpr double kLeastGain = 0.01;
+
 constexpr int kRoundsOfClosing = 3;
 constexpr int kRoundsOfRepair = 4;
 constexpr std::size_t kDoubtfulPerLoop = 4;
@@ -44,14 +45,35 @@ class LoopCloser {
              const LoopClosingOptions& options, RunObserver& observer)
       : problem_(problem), links_(links), clusters_(clusters), options_(options), observer_(observer) {}
 
-  LoopChoice run() {
-    LoopChoice best = problem_.chain_alone();
+  LoopChoice run(const std::vector<LoopHypothesis>& hypotheses) {
+    LoopChoice chain = problem_.chain_alone();
+    LoopChoice best = assembled(hypotheses, chain.map_from_node);
     close(best);
+    close(chain);
+    const bool chain_is_hopeless = chain.value < best.value - kHopelessLoop;
     repair(best);
-    return best;
+    if (chain_is_hopeless) return best;
+    repair(chain);
+    return chain.value > best.value ? chain : best;
   }
 
  private:
+  /// The best of some maps that are assembled of pieces; no more are tried when several in a row are no better.
+  LoopChoice assembled(const std::vector<LoopHypothesis>& hypotheses, const std::vector<Pose2>& map_of_chain) {
+    LoopChoice best;
+    int in_vain = 0;
+    for (int variant = 0; variant < options_.assemblies && in_vain < kAssembliesInVain; ++variant) {
+      if (variant > 0 && !observer_.keep_going()) break;
+      LoopChoice trial =
+          problem_.of_map(assembled_map(links_, hypotheses, map_of_chain, problem_.evidence(), variant, observer_));
+      const bool is_better =
+          variant == 0 || trial.value > best.value + std::max(options_.least_gain, kLeastGain * std::abs(best.value));
+      in_vain = is_better ? 0 : in_vain + 1;
+      if (is_better) best = std::move(trial);
+    }
+    return best;
+  }
+
   /// Closes the loops that the map agrees with as it is.
   bool close_agreeing(LoopChoice& map) {
     LoopChoice trial = map;
@@ -259,10 +281,11 @@ class LoopCloser {
 }  // namespace
 
 LoopSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<ChainLink>& links,
-                         const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
-                         const LoopClosingOptions& options, int threads, RunObserver& observer) {
+                         const std::vector<LoopHypothesis>& hypotheses, const std::vector<LoopCluster>& clusters,
+                         const VisibilityOptions& visibility, const LoopClosingOptions& options, int threads,
+                         RunObserver& observer) {
   LoopProblem problem(views, links, clusters, visibility, options, threads);
-  LoopChoice best = LoopCloser(problem, links, clusters, options, observer).run();
+  LoopChoice best = LoopCloser(problem, links, clusters, options, observer).run(hypotheses);
   LoopSolution solution;
   solution.component = connected_parts(views.size(), problem.constraints(best));
   for (std::size_t k = 0; k < clusters.size(); ++k) {

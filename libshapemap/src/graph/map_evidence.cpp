@@ -15,11 +15,17 @@ constexpr std::size_t kLeastApart = 2;   // along the chain
 constexpr std::size_t kSameStretch = 8;  // all pairs of nodes this near along the chain are asked, else one in four
 constexpr std::size_t kStride = 3;
 constexpr double kSlack = 2.0;
+constexpr std::size_t kPairsBetween = 150;  // of two pieces, about so many tell enough
 
 /// Less changes nothing that matters.
 bool moved(const Pose2& a, const Pose2& b) {
   return (a.translation() - b.translation()).lpNorm<Eigen::Infinity>() > 0.03 ||
          angle_between(a.theta_rad, b.theta_rad) > 0.4 * kDegree;
+}
+
+/// Neighbours in the chain tell nothing new; of all others there are more than are needed.
+bool is_asked(std::size_t a, std::size_t b) {
+  return b - a >= kLeastApart && (b - a < kSameStretch || (a % 2 == 0 && b % 2 == 0));
 }
 
 }  // namespace
@@ -30,26 +36,45 @@ double MapEvidence::of_pair(const Visibility& v) {
 }
 
 double MapEvidence::of(const std::vector<Pose2>& map_from_node) {
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  for (const auto& pair : near_pairs(map_from_node, kWithin_m)) {
-    const std::size_t apart = pair.second - pair.first;
-    const bool asked = apart < kSameStretch || (pair.first % 2 == 0 && pair.second % 2 == 0);
-    if (apart >= kLeastApart && asked) pairs.push_back(pair);
+  std::vector<RelativePose> pairs;
+  for (const auto& [a, b] : near_pairs(map_from_node, kWithin_m)) {
+    if (is_asked(a, b)) pairs.push_back({a, b, inverse(map_from_node[a]) * map_from_node[b]});
   }
+  return of_pairs(pairs);
+}
+
+double MapEvidence::between(const std::vector<Pose2>& pose_in_piece, const std::vector<std::size_t>& f,
+                            const std::vector<std::size_t>& g, const Pose2& f_from_g) {
+  std::vector<RelativePose> pairs;
+  for (const std::size_t j : g) {
+    const Pose2 there = f_from_g * pose_in_piece[j];
+    for (const std::size_t i : f) {
+      if ((pose_in_piece[i].translation() - there.translation()).squaredNorm() >= kWithin_m * kWithin_m) continue;
+      const Pose2 f_from_j = inverse(pose_in_piece[i]) * there;
+      if (is_asked(std::min(i, j), std::max(i, j))) {
+        pairs.push_back(i < j ? RelativePose{i, j, f_from_j} : RelativePose{j, i, inverse(f_from_j)});
+      }
+    }
+  }
+  const std::size_t stride = pairs.size() / kPairsBetween + 1;
+  std::vector<RelativePose> some;
+  for (std::size_t i = 0; i < pairs.size(); i += stride) some.push_back(pairs[i]);
+  if (some.empty()) return 0.0;
+  return of_pairs(some) * static_cast<double>(pairs.size()) / static_cast<double>(some.size());
+}
+
+double MapEvidence::of_pairs(const std::vector<RelativePose>& pairs) {
   std::vector<Known*> known;
   std::vector<std::size_t> stale;
-  std::vector<Pose2> poses;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto [found, is_new] = known_.try_emplace(pairs[i]);
+    const auto [found, is_new] = known_.try_emplace({pairs[i].a, pairs[i].b});
     known.push_back(&found->second);
-    poses.push_back(inverse(map_from_node[pairs[i].first]) * map_from_node[pairs[i].second]);
-    if (is_new || moved(found->second.a_from_b, poses.back())) stale.push_back(i);
+    if (is_new || moved(found->second.a_from_b, pairs[i].a_from_b)) stale.push_back(i);
   }
   parallel_for(stale.size(), threads_, [&](std::size_t k) {
-    const std::size_t i = stale[k];
-    const Visibility seen =
-        visibility(*views_[pairs[i].first], *views_[pairs[i].second], poses[i], options_, kSlack, kStride);
-    *known[i] = {poses[i], of_pair(seen)};
+    const RelativePose& pair = pairs[stale[k]];
+    const Visibility seen = visibility(*views_[pair.a], *views_[pair.b], pair.a_from_b, options_, kSlack, kStride);
+    *known[stale[k]] = {pair.a_from_b, of_pair(seen)};
   });
   double sum = 0.0;
   for (const Known* pair : known) sum += pair->value;

@@ -98,23 +98,30 @@ class KeyframeStore : public AlignmentStore {
   AlignmentStore& of_positions_;
 };
 
-std::vector<LoopCluster> loop_candidates(const NodeViews& views, const std::vector<ChainLink>& links,
-                                         const std::vector<Pose2>& map_from_keyframe, const MappingOptions& options,
-                                         RunObserver& observer, AlignmentStore* store) {
+std::vector<LoopHypothesis> loop_hypotheses(const NodeViews& views, const std::vector<ChainLink>& links,
+                                            const MappingOptions& options, RunObserver& observer,
+                                            AlignmentStore* store) {
   observer.on_stage("loops");
   std::vector<LoopHypothesis> hypotheses =
       likely_loops(views, options.robust.search, options.loop_search, options.chain.threads, observer, store);
-  std::vector<std::size_t> piece(views.size(), 0);
   std::vector<std::size_t> doubtful;
   for (std::size_t i = 0; i < links.size(); ++i) {
-    piece[i + 1] = piece[i] + (links[i].exists() && links[i].probability >= kTrusted ? 0 : 1);
     if (links[i].exists() && links[i].probability < options.loop_search.bridge_below) doubtful.push_back(i);
   }
   observer.on_stage("doubts");
   const std::vector<LoopHypothesis> around =
       bridges(views, doubtful, options.robust.search, options.chain.threads, observer, store);
   hypotheses.insert(hypotheses.end(), around.begin(), around.end());
-  return loop_clusters(hypotheses, map_from_keyframe, piece, {});
+  return hypotheses;
+}
+
+/// For each keyframe, the piece of the chain that it is in, by number.
+std::vector<std::size_t> trusted_pieces(const std::vector<ChainLink>& links) {
+  std::vector<std::size_t> piece(links.size() + 1, 0);
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    piece[i + 1] = piece[i] + (links[i].exists() && links[i].probability >= kTrusted ? 0 : 1);
+  }
+  return piece;
 }
 
 std::vector<PoseConstraint> loop_constraints(const std::vector<LoopCluster>& clusters,
@@ -169,11 +176,13 @@ KeyframeMap map_with_loops(const KeyframeChain& chain, const MappingOptions& opt
 
   std::optional<KeyframeStore> of_keyframes;
   if (store) of_keyframes.emplace(chain, *store);
-  const std::vector<LoopCluster> clusters =
-      loop_candidates(views, links, map.map_from_keyframe, options, observer, of_keyframes ? &*of_keyframes : nullptr);
+  const std::vector<LoopHypothesis> hypotheses =
+      loop_hypotheses(views, links, options, observer, of_keyframes ? &*of_keyframes : nullptr);
   observer.on_stage("whole map");
-  const LoopSolution solution = close_loops(views, links, clusters, options.robust.search.visibility,
-                                            options.loop_closing, options.chain.threads, observer);
+  const std::vector<LoopCluster> clusters = loop_clusters(hypotheses, map.map_from_keyframe, trusted_pieces(links), {});
+  const VisibilityOptions& visibility = options.robust.search.visibility;
+  const LoopSolution solution = close_loops(views, links, hypotheses, clusters, visibility, options.loop_closing,
+                                            options.chain.threads, observer);
   for (std::size_t i = 0; i < links.size(); ++i) {
     const int rank = solution.link_choice[i];
     map.link_choice[i] =

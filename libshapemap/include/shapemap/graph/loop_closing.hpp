@@ -28,6 +28,7 @@ struct ChainLink {
 };
 
 struct LoopClosingOptions {
+  int assemblies = 12;
   double doubt_below = 0.97;
   int repairs = 12;
   double trust_cap = 20.0;
@@ -36,6 +37,8 @@ struct LoopClosingOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
+    visit(Field{"loop-assemblies", "maps of which the best is pursued, put together from sure pieces", 1, 1000},
+          self.assemblies);
     visit(Field{"loop-doubt-below", "a less probable alignment of the chain may be replaced", 0, 1}, self.doubt_below);
     visit(Field{"loop-repairs", "contradictions that are looked into, in each round", 0, 1000}, self.repairs);
     visit(Field{"loop-trust-cap", "what a loop can weigh at most, as logarithm of odds", 0, 1000}, self.trust_cap);
@@ -61,7 +64,8 @@ inline constexpr int kCut = -1;
 /// a strong loop that does not fit, or a doubtful alignment, may show that another alignment is wrong, or a loop.
 /// Stops early with what there is when the observer asks to.
 LoopSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<ChainLink>& links,
-                         const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
-                         const LoopClosingOptions& options, int threads, RunObserver& observer);
+                         const std::vector<LoopHypothesis>& hypotheses, const std::vector<LoopCluster>& clusters,
+                         const VisibilityOptions& visibility, const LoopClosingOptions& options, int threads,
+                         RunObserver& observer);
 
 }  // namespace shapemap

@@ -22,6 +22,11 @@ class MapEvidence {
 
   double of(const std::vector<Pose2>& map_from_node);
 
+  /// Of the pairs of which one node is in `f` and the other in `g`, two pieces with a frame each. Estimated from a part
+  /// of them where they are many.
+  double between(const std::vector<Pose2>& pose_in_piece, const std::vector<std::size_t>& f,
+                 const std::vector<std::size_t>& g, const Pose2& f_from_g);
+
   /// Of one pair of scans.
   static double of_pair(const Visibility& visibility);
 
@@ -31,6 +36,13 @@ class MapEvidence {
     Pose2 a_from_b;
     double value = 0.0;
   };
+
+  struct RelativePose {
+    std::size_t a;
+    std::size_t b;  ///< the later one
+    Pose2 a_from_b;
+  };
+  double of_pairs(const std::vector<RelativePose>& pairs);
 
   std::vector<std::shared_ptr<const ScanView>> views_;
   VisibilityOptions options_;

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "shapemap/graph/pose_graph.hpp"
+
+/// Ways to lay two pieces of a map together, each with a frame of its own.
+namespace shapemap {
+
+/// An alignment of two scans that may be right.
+struct Joint {
+  PoseConstraint constraint;
+  double worth = 0.0;  ///< logarithm of odds, limited
+  double noise = 0.0;  ///< what a way gains that starts from it
+};
+
+/// The piece `f` and the piece `g` in one frame, and the joints that say so.
+struct Way {
+  Pose2 f_from_g;
+  std::vector<std::size_t> joints;
+  double gain = 0.0;
+};
+
+/// Joints by index, poses by node, each in the frame of its piece.
+class PieceJoints {
+ public:
+  PieceJoints(const std::vector<Joint>& joints, const std::vector<Pose2>& piece_from_node,
+              const std::vector<std::size_t>& piece_of_node)
+      : joints_(joints), piece_from_node_(piece_from_node), piece_of_node_(piece_of_node) {}
+
+  /// All that some of `between`, the joints of `f` and another piece, agree on. Each joint is part of a way.
+  std::vector<Way> ways(std::size_t f, std::vector<std::size_t> between) const;
+
+  /// Whether a joint within a piece agrees with it.
+  bool holds(const Joint& joint) const;
+
+ private:
+  PoseConstraint from_piece(std::size_t f, std::size_t joint) const;
+  bool agrees(std::size_t f, const Pose2& f_from_g, std::size_t joint, std::size_t seed) const;
+  Pose2 mean_of(std::size_t f, const std::vector<std::size_t>& joints) const;
+  double strength(std::size_t f, const std::vector<std::size_t>& joints) const;
+
+  const std::vector<Joint>& joints_;
+  const std::vector<Pose2>& piece_from_node_;
+  const std::vector<std::size_t>& piece_of_node_;
+};
+
+/// Where the chain goes from one piece to the other and back: nodes of both, `of_f` and `of_g`, in order.
+struct Crossing {
+  std::size_t in_f;
+  std::size_t in_g;
+  std::size_t num_steps;
+};
+std::vector<Crossing> crossings(const std::vector<std::size_t>& of_f, const std::vector<std::size_t>& of_g);
+
+}  // namespace shapemap
