@@ -7,6 +7,7 @@
 #include "shapemap/graph/loop_closing.hpp"
 #include "shapemap/graph/loop_hypotheses.hpp"
 #include "shapemap/graph/map_refinement.hpp"
+#include "shapemap/graph/sub_scan_refinement.hpp"
 #include "shapemap/scan/returns.hpp"
 #include "shapemap/shape/polyline_em.hpp"
 #include "shapemap/shape/shape.hpp"
@@ -93,6 +94,7 @@ struct MappingOptions {
   LoopSearchOptions loop_search;
   LoopClosingOptions loop_closing;
   RefinementOptions refinement;
+  SubScanOptions sub_scans;
   AlignOptions align;  ///< of the paper's method
   ChainOptions chain;
 
@@ -114,6 +116,7 @@ struct MappingOptions {
     visit("Robust method: places that look alike", self.loop_search);
     visit("Robust method: closing loops", self.loop_closing);
     visit("Robust method: the whole map", self.refinement);
+    visit("Robust method: sub-scans", self.sub_scans);
     visit("Paper's method: histograms", self.align.histogram);
     visit("Paper's method: similarity", self.align.similarity);
     visit("Paper's method: rotations", self.align.rotation);
