@@ -6,6 +6,7 @@
 #include "chains.hpp"
 #include "keyframe_chain.hpp"
 #include "keyframe_map.hpp"
+#include "link_doubts.hpp"
 #include "shapemap/align/robust_align.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/graph/loop_closing.hpp"
@@ -125,10 +126,13 @@ KeyframeMap map_of(const KeyframeChain& chain, const MappingOptions& options, Ru
 
 void map_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
                   AlignmentStore* store, MapResult& result) {
-  const KeyframeChain chain = chain_keyframes(log, options, observer, sink, store, result);
+  KeyframeChain chain = chain_keyframes(log, options, observer, sink, store, result);
   const auto start = std::chrono::steady_clock::now();
   KeyframeMap map = map_of(chain, options, observer, store);
-  const SubScanCorrections sub_scans = refine_sub_scans_of_map(log, chain, options, observer, map);
+  SubScanCorrections sub_scans = refine_sub_scans_of_map(log, chain, options, observer, map);
+  if (options.loops.close_loops && revise_doubtful_links(options, observer, chain, map)) {
+    sub_scans = refine_sub_scans_of_map(log, chain, options, observer, map);
+  }
   result.times.loops_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.loops = std::move(map.loops);
   Placing(log, chain, map, sub_scans, options, sink, result).run();
