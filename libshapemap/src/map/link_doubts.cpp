@@ -23,6 +23,15 @@ double probability(const KeyframeLink& link, const ConfidenceOptions& options) {
   return judged(link.hypotheses, link.choice.alternative, link.choice.margin, options).probability;
 }
 
+/// What a position does not see tells of no wall that is looked through: of scans that look one way, those of two
+/// different corridors go together well enough. Only positions that look all round are judged.
+bool looks_all_round(const ScanView& view) {
+  constexpr double kAllRound_rad = 330 * kDegree;
+  double seen_rad = 0.0;
+  for (const RangeImage& image : view.images) seen_rad += image.step_rad * static_cast<double>(image.beams.size());
+  return seen_rad >= kAllRound_rad;
+}
+
 class LinkDoubts {
  public:
   LinkDoubts(const MappingOptions& options, RunObserver& observer, KeyframeChain& chain, KeyframeMap& map)
@@ -55,6 +64,7 @@ class LinkDoubts {
     for (std::size_t i = 0; i < chain_.links.size(); ++i) {
       if (map_.link_choice[i] == kCut || map_.held_by_loops[i]) continue;
       if (probability(chain_.links[i], options_.robust.confidence) >= options_.link_revision.doubt_below) continue;
+      if (!looks_all_round(*views_[i]) || !looks_all_round(*views_[i + 1])) continue;
       DoubtfulLink doubt;
       doubt.link = i;
       doubtful_.push_back(doubt);
