@@ -84,7 +84,10 @@ class Revision {
   }
 
   std::size_t piece_of(std::size_t node) const { return piece_[node]; }
-  std::vector<Pose2> poses() && { return std::move(poses_); }
+  void give(RevisedMap& result) && {
+    result.map_from_node = std::move(poses_);
+    result.piece_of_node = std::move(piece_);
+  }
 
  private:
   /// How the piece of the later node moves.
@@ -119,9 +122,10 @@ class Revision {
 
 }  // namespace
 
-RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node, std::vector<std::size_t> piece_of_node,
-                        const std::vector<DoubtfulLink>& doubtful, const VisibilityOptions& visibility,
-                        const LinkRevisionOptions& options, int threads, RunObserver& observer) {
+RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node,
+                        std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulLink>& doubtful,
+                        const VisibilityOptions& visibility, const LinkRevisionOptions& options, int threads,
+                        RunObserver& observer) {
   Revision revision(views, std::move(map_from_node), std::move(piece_of_node), visibility, threads);
   RevisedMap result;
   result.choice.assign(doubtful.size(), kCut);
@@ -154,7 +158,7 @@ RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node
       revision.join(doubtful[d].link, doubtful[d].candidates.front().a_from_b);
     }
   }
-  result.map_from_node = std::move(revision).poses();
+  std::move(revision).give(result);
   return result;
 }
 

@@ -57,7 +57,8 @@ class Refinement {
   }
 
   void run_round(int round) {
-    line_.first_gate_m = line_.last_gate_m = options_.gate_m * std::max(1.0, kFirstGate * std::pow(kGateShrinks, round));
+    line_.first_gate_m = line_.last_gate_m =
+        options_.gate_m * std::max(1.0, kFirstGate * std::pow(kGateShrinks, round));
     std::vector<PoseConstraint> constraints = held_;
     const std::vector<PoseConstraint> found = aligned_pairs();
     constraints.insert(constraints.end(), found.begin(), found.end());
@@ -136,8 +137,7 @@ class Refinement {
         std::abs(off.theta_rad) > kMostOff_rad) {
       return std::nullopt;
     }
-    return PoseConstraint{pair.a, pair.b, fit.ref_from_query,
-                          pose_covariance(fit, kNoise), kLoss};
+    return PoseConstraint{pair.a, pair.b, fit.ref_from_query, pose_covariance(fit, kNoise), kLoss};
   }
 
   const SubScanViews& views_;
@@ -145,8 +145,8 @@ class Refinement {
   PointToLineOptions line_;
   const SubScanOptions& options_;
   int threads_;
-  std::vector<Pose2> poses_;         ///< of the nodes, then of their sub-scans
-  std::vector<std::size_t> first_;   ///< per node: the first of its sub-scans in `poses_`
+  std::vector<Pose2> poses_;        ///< of the nodes, then of their sub-scans
+  std::vector<std::size_t> first_;  ///< per node: the first of its sub-scans in `poses_`
   std::vector<PoseConstraint> held_;
 };
 

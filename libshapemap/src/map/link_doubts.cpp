@@ -16,6 +16,8 @@ namespace {
 /// Pieces that nothing joins lie so far apart: no scan sees so far.
 constexpr double kApart_m = 1e4;
 
+constexpr int kMoreEffort = 4;
+
 /// Of a closed loop.
 const Eigen::Matrix3d kLoopCovariance = Eigen::Vector3d(0.01, 0.01, 0.0012).asDiagonal();
 
@@ -41,33 +43,53 @@ class LinkDoubts {
 
   bool run() {
     find();
-    if (doubtful_.empty()) return false;
-    for (DoubtfulLink& doubt : doubtful_) add_candidates(doubt);
-    const RevisedMap revised = revise_links(views_, map_.map_from_keyframe, pieces(), doubtful_,
-                                            options_.robust.search.visibility, options_.link_revision,
-                                            options_.chain.threads, observer_);
-    bool any = false;
-    for (std::size_t d = 0; d < doubtful_.size(); ++d) {
-      if (revised.choice[d] == 0) continue;
-      any = true;
-      take(doubtful_[d].link, revised.choice[d] == kCut ? kCut : hypothesis_[d][static_cast<std::size_t>(revised.choice[d])]);
+    if (doubts_.empty()) return false;
+    poses_ = map_.map_from_keyframe;
+    piece_ = pieces();
+    for (const bool thoroughly : {false, true}) {
+      for (Doubt& doubt : doubts_) add_candidates(doubt, thoroughly);
+      settle();
     }
-    if (!any) return false;
-    map_.map_from_keyframe = revised.map_from_node;
+    for (const Doubt& doubt : doubts_) take(doubt.of_map.link, kCut);
+    if (!changed_) return false;
+    map_.map_from_keyframe = poses_;
     part();
     refine();
     return true;
   }
 
  private:
+  struct Doubt {
+    DoubtfulLink of_map;
+    std::vector<int> hypotheses;  ///< per candidate: which of the link's
+  };
+
+  /// Joins what is certain by the candidates that there are; the rest stays in doubt.
+  void settle() {
+    std::vector<DoubtfulLink> doubtful;
+    for (const Doubt& doubt : doubts_) doubtful.push_back(doubt.of_map);
+    RevisedMap revised = revise_links(views_, poses_, piece_, doubtful, options_.robust.search.visibility,
+                                      options_.link_revision, options_.chain.threads, observer_);
+    poses_ = std::move(revised.map_from_node);
+    piece_ = std::move(revised.piece_of_node);
+    std::vector<Doubt> rest;
+    for (std::size_t d = 0; d < doubts_.size(); ++d) {
+      const int choice = revised.choice[d];
+      if (choice == kCut) {
+        rest.push_back(std::move(doubts_[d]));
+      } else if (choice > 0) {
+        take(doubts_[d].of_map.link, doubts_[d].hypotheses[static_cast<std::size_t>(choice)]);
+      }
+    }
+    doubts_ = std::move(rest);
+  }
+
   void find() {
     for (std::size_t i = 0; i < chain_.links.size(); ++i) {
       if (map_.link_choice[i] == kCut || map_.held_by_loops[i]) continue;
       if (probability(chain_.links[i], options_.robust.confidence) >= options_.link_revision.doubt_below) continue;
       if (!looks_all_round(*views_[i]) || !looks_all_round(*views_[i + 1])) continue;
-      DoubtfulLink doubt;
-      doubt.link = i;
-      doubtful_.push_back(doubt);
+      doubts_.push_back({{i, {}}, {}});
     }
   }
 
@@ -75,10 +97,11 @@ class LinkDoubts {
   std::vector<std::size_t> pieces() const {
     std::vector<PoseConstraint> sure;
     const auto is_doubtful = [&](std::size_t i) {
-      return std::any_of(doubtful_.begin(), doubtful_.end(), [&](const DoubtfulLink& d) { return d.link == i; });
+      return std::any_of(doubts_.begin(), doubts_.end(), [&](const Doubt& doubt) { return doubt.of_map.link == i; });
     };
     for (std::size_t i = 0; i < chain_.links.size(); ++i) {
-      if (map_.link_choice[i] != kCut && !is_doubtful(i)) sure.push_back({i, i + 1, {}, Eigen::Matrix3d::Identity(), 0});
+      if (map_.link_choice[i] != kCut && !is_doubtful(i))
+        sure.push_back({i, i + 1, {}, Eigen::Matrix3d::Identity(), 0});
     }
     add_loops(sure);
     return connected_parts(views_.size(), sure);
@@ -96,18 +119,22 @@ class LinkDoubts {
     return static_cast<std::size_t>(found - chain_.keyframes.begin());
   }
 
-  void add_candidates(DoubtfulLink& doubt) {
-    const std::size_t i = doubt.link;
+  void add_candidates(Doubt& doubt, bool thoroughly) {
+    const std::size_t i = doubt.of_map.link;
     KeyframeLink& link = chain_.links[i];
+    if (thoroughly) {
+      search_again(i);
+    } else if (probability(link, options_.robust.confidence) < options_.loop_search.bridge_below) {
+      add_bridges(i);
+    }
     const auto taken = static_cast<std::size_t>(map_.link_choice[i]);
-    if (probability(link, options_.robust.confidence) < options_.loop_search.bridge_below) add_bridges(i);
-    hypothesis_.push_back({map_.link_choice[i]});
-    doubt.candidates.push_back({inverse(map_.map_from_keyframe[i]) * map_.map_from_keyframe[i + 1],
-                                link.hypotheses[taken].score});
+    const Pose2 as_in_map = inverse(map_.map_from_keyframe[i]) * map_.map_from_keyframe[i + 1];
+    doubt.hypotheses = {map_.link_choice[i]};
+    doubt.of_map.candidates = {{as_in_map, link.hypotheses[taken].score}};
     for (std::size_t k = 0; k < link.hypotheses.size(); ++k) {
       if (k == taken) continue;
-      doubt.candidates.push_back({link.hypotheses[k].ref_from_query, link.hypotheses[k].score});
-      hypothesis_.back().push_back(static_cast<int>(k));
+      doubt.hypotheses.push_back(static_cast<int>(k));
+      doubt.of_map.candidates.push_back({link.hypotheses[k].ref_from_query, link.hypotheses[k].score});
     }
   }
 
@@ -126,7 +153,22 @@ class LinkDoubts {
     }
   }
 
-  void take(std::size_t link, int hypothesis) { map_.link_choice[link] = hypothesis; }
+  /// With much more effort than a chain can have for each link.
+  void search_again(std::size_t i) {
+    HypothesisSearchOptions search = options_.robust.search;
+    search.voting.peaks *= kMoreEffort;
+    search.hypotheses.rotation_peaks *= kMoreEffort;
+    search.hypotheses.refined *= kMoreEffort;
+    search.hypotheses.kept *= kMoreEffort;
+    for (const PoseHypothesis& pose : pose_hypotheses(*views_[i], *views_[i + 1], search)) {
+      add_if_new(pose, chain_.links[i].hypotheses);
+    }
+  }
+
+  void take(std::size_t link, int hypothesis) {
+    map_.link_choice[link] = hypothesis;
+    changed_ = true;
+  }
 
   /// Moves what is not joined any more apart.
   void part() {
@@ -158,8 +200,10 @@ class LinkDoubts {
   KeyframeChain& chain_;
   KeyframeMap& map_;
   NodeViews views_;
-  std::vector<DoubtfulLink> doubtful_;
-  std::vector<std::vector<int>> hypothesis_;  ///< per doubtful link and candidate
+  std::vector<Doubt> doubts_;
+  std::vector<Pose2> poses_;        ///< of the pieces, as far as they are joined
+  std::vector<std::size_t> piece_;  ///< of each node
+  bool changed_ = false;
 };
 
 }  // namespace

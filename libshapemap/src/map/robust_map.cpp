@@ -21,13 +21,7 @@ class Placing {
  public:
   Placing(const Log& log, const KeyframeChain& chain, const KeyframeMap& map, const SubScanCorrections& sub_scans,
           const MappingOptions& options, TraceSink* sink, MapResult& result)
-      : log_(log),
-        chain_(chain),
-        map_(map),
-        sub_scans_(sub_scans),
-        options_(options),
-        sink_(sink),
-        result_(result) {}
+      : log_(log), chain_(chain), map_(map), sub_scans_(sub_scans), options_(options), sink_(sink), result_(result) {}
 
   void run() {
     auto attached = chain_.attached.begin();

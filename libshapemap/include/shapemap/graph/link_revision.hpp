@@ -40,15 +40,17 @@ struct DoubtfulLink {
 
 struct RevisedMap {
   std::vector<Pose2> map_from_node;
-  std::vector<int> choice;  ///< per doubtful link: the candidate that is taken; kCut: none
+  std::vector<std::size_t> piece_of_node;  ///< pieces that were joined have the number of one of them
+  std::vector<int> choice;                 ///< per doubtful link: the candidate that is taken; kCut: none
 };
 
 /// Joins the pieces (nodes with the same `piece_of_node`, right to each other) at the doubtful links, the most certain
 /// first. A candidate is worth its own score and what all pairs of scans of the two pieces then say (MapEvidence), as
 /// far as they are near each other along the chain. What stays doubtful is not joined. Stops early, with the rest of
 /// the links as they were, when the observer asks to.
-RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node, std::vector<std::size_t> piece_of_node,
-                        const std::vector<DoubtfulLink>& doubtful, const VisibilityOptions& visibility,
-                        const LinkRevisionOptions& options, int threads, RunObserver& observer);
+RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node,
+                        std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulLink>& doubtful,
+                        const VisibilityOptions& visibility, const LinkRevisionOptions& options, int threads,
+                        RunObserver& observer);
 
 }  // namespace shapemap
