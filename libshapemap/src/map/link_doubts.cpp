@@ -89,6 +89,7 @@ class LinkDoubts {
       if (map_.link_choice[i] == kCut || map_.held_by_loops[i]) continue;
       if (probability(chain_.links[i], options_.robust.confidence) >= options_.link_revision.doubt_below) continue;
       if (!looks_all_round(*views_[i]) || !looks_all_round(*views_[i + 1])) continue;
+      chain_.links[i].num_of_chain = chain_.links[i].hypotheses.size();
       doubts_.push_back({{i, {}}, {}});
     }
   }

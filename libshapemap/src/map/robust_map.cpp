@@ -116,6 +116,16 @@ KeyframeMap map_of(const KeyframeChain& chain, const MappingOptions& options, Ru
   }
 }
 
+/// Links that were revised have more to choose from than when they were made.
+void trace_revised(const KeyframeChain& chain, TraceSink& sink) {
+  for (std::size_t i = 0; i < chain.links.size(); ++i) {
+    const KeyframeLink& link = chain.links[i];
+    if (link.num_of_chain == 0 || link.num_of_chain == link.hypotheses.size()) continue;
+    sink.on_link(
+        {chain.keyframes[i].position_index, chain.keyframes[i + 1].position_index, link.hypotheses, link.num_of_chain});
+  }
+}
+
 }  // namespace
 
 void map_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
@@ -129,6 +139,7 @@ void map_robustly(const Log& log, const MappingOptions& options, RunObserver& ob
   }
   result.times.loops_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.loops = std::move(map.loops);
+  if (sink) trace_revised(chain, *sink);
   Placing(log, chain, map, sub_scans, options, sink, result).run();
   if (!observer.keep_going()) throw Interrupted();
 }
