@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .poses import Array, compose, rotate, wrap_angle
+from .poses import Array, compose, inverse, rotate, wrap_angle
 from .rates import wilson_interval
+from .robot import Drive
 
 RIGHT_M = 0.10
 RIGHT_DEG = 1.0
@@ -102,6 +103,16 @@ def judge(seed: int, truth: Array, fragments: Sequence[Fragment], seconds: float
         not all(one.within(FAR_OFF_M, FAR_OFF_DEG) for one in judged),
         seconds=seconds,
     )
+
+
+def mean_of_sub_scans(drive: Drive) -> dict[int, Array]:
+    """Where each position is by the true poses of its sub-scans, which is all that scans can tell of it: their errors
+    are the robot's, and a map that has each of them exactly still does not know how the robot meant to stand."""
+    nominal = np.zeros((len(drive.nominal_headings_rad), 3))
+    nominal[:, 2] = drive.nominal_headings_rad
+    stood = compose(drive.map_from_sub_scan, inverse(nominal))
+    errors = compose(inverse(drive.map_from_robot)[:, None], stood).mean(axis=1)
+    return dict(enumerate(compose(drive.map_from_robot, errors)))
 
 
 def lost_map(seed: int, num_positions: int, fault: str) -> WholeMap:

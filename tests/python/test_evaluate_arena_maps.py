@@ -13,9 +13,9 @@ import pytest
 import evaluate_arena_maps
 from shapemap_sim.poses import Array, compose
 from shapemap_sim.read import read_tum
-from shapemap_sim.robot import RobotOptions
+from shapemap_sim.robot import RobotOptions, drive
 from shapemap_sim.simulation import SimulationOptions, simulate
-from shapemap_sim.whole_maps import best_motion, fragment_errors, judge, lost_map, not_right, summary
+from shapemap_sim.whole_maps import best_motion, fragment_errors, judge, lost_map, mean_of_sub_scans, not_right, summary
 from shapemap_sim.write import tum_text
 
 ELSEWHERE = np.array([3.0, -7.0, np.deg2rad(130)])
@@ -108,6 +108,15 @@ def test_trajectories_are_read_as_they_were_written(tmp_path: Path) -> None:
     assert np.array([pose for _, pose in read]) == pytest.approx(simulation.drive.map_from_robot, abs=1e-6)
 
 
+def test_the_ceiling_is_what_the_errors_of_four_sub_scans_leave() -> None:
+    options = RobotOptions(num_positions=16, heading_uncertainty_deg=180, sub_scan_tilt_share=0.0)
+    route = np.array([[0.0, 0.0], [40.0, 0.0]])
+    drives = [drive(seed, route, options) for seed in range(40)]
+    errors = [fragment_errors(mean_of_sub_scans(one), one.map_from_robot) for one in drives]
+    root_mean_square = np.sqrt(np.mean([e.errors_deg**2 for e in errors]))
+    assert root_mean_square == pytest.approx(options.sub_scan_heading_sigma_deg / 2, rel=0.1)
+
+
 def made_up_mapper(folder: Path) -> Path:
     """Knows the truth from the log; turns the last position by 3 degrees, or makes a fragment of it."""
     program = folder / "mapper"
@@ -148,6 +157,12 @@ def test_program_says_what_became_of_each_map(
     assert (one["seed"], one["verdict"], one["seconds"]) == (5, verdict, 0.5)
     assert one["max_error_deg"] == pytest.approx(0.0 if extra else 3.0, abs=0.01)
     assert [path.name for path in (tmp_path / "pictures").iterdir()] == ["seed005.png"]
+
+
+def test_the_ceiling_needs_no_mapper(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["--seeds", "5", "--positions", "3", "--jobs", "1", "--heading-sigma-deg", "0", "--ceiling"]
+    assert evaluate_arena_maps.main([*arguments, "--cli", str(tmp_path / "none")]) == 0
+    assert "| whole, and all within 10 cm and 1 deg | 1 |" in capsys.readouterr().out
 
 
 def test_program_counts_a_crashed_mapper(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
