@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "shapemap/align/pose_hypothesis.hpp"
 #include "shapemap/graph/loop_closing.hpp"
 #include "support/matchers.hpp"
 #include "support/ring_walk.hpp"
@@ -69,8 +70,12 @@ TEST(ReviseLinks, RepairsSeveralOnlyOneOfWhichIsRight) {
   EXPECT_LT(test::worst_off_m(revised.map_from_node, map.truth), 1e-6);
 }
 
+/// The scores are those that the two scans give.
 TEST(ReviseLinks, SplitsWhereNoCandidateIsRight) {
   Torn map({6});
+  for (DoubtfulLink::Candidate& candidate : map.doubts[0].candidates) {
+    candidate.score = hypothesis_at(*map.views[6], *map.views[7], candidate.a_from_b, {}).score;
+  }
   const RevisedMap revised = map.revised();
   EXPECT_THAT(revised.choice, ElementsAre(kCut));
   EXPECT_NE(revised.piece_of_node[6], revised.piece_of_node[7]);
