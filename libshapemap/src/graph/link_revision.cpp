@@ -29,8 +29,8 @@ constexpr double kSame_rad = 8 * kDegree;
 /// The right place may be none of the candidates: the best is then better than the others, and still bad.
 constexpr double kShareOfValue = 0.5;
 
-/// A link without a rival.
-constexpr double kNoRival = 50.0;
+/// Of rivals that are worse still, no more is made: the best of many bad ones may be far ahead.
+constexpr double kFullLead = 10.0;
 
 bool is_same(const Pose2& a, const Pose2& b) {
   return (a.translation() - b.translation()).norm() < kSame_m && angle_between(a.theta_rad, b.theta_rad) < kSame_rad;
@@ -64,7 +64,7 @@ class Revision {
       verdict.best = static_cast<int>(k);
       verdict.value = values[k];
     }
-    double second = verdict.value - kNoRival;
+    double second = verdict.value - kFullLead;
     const Pose2& best = doubt.candidates[static_cast<std::size_t>(verdict.best)].a_from_b;
     for (std::size_t k = 0; k < values.size(); ++k) {
       if (!is_same(doubt.candidates[k].a_from_b, best)) second = std::max(second, values[k]);
