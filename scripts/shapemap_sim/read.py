@@ -90,3 +90,15 @@ def read_scan_log(path: Path) -> ScanLog:
         sensor["max_range"],
         np.array(draft.ranges),
     )
+
+
+def read_tum(path: Path) -> list[tuple[float, Array]]:
+    """Time [s] and planar pose `[3]` of each line of a trajectory in TUM's format."""
+    poses = []
+    for line in path.read_text(encoding="utf-8").splitlines():
+        fields = line.split("#")[0].split()
+        if not fields:
+            continue
+        time, x, y, _, _, _, qz, qw = map(float, fields)
+        poses.append((time, np.array([x, y, 2.0 * np.arctan2(qz, qw)])))
+    return poses

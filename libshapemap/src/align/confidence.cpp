@@ -8,13 +8,6 @@
 namespace shapemap {
 namespace {
 
-/// Spread of a point about its line, larger than it is: neighbouring points err alike, which makes many count as few.
-/// Set so that errors on simulated arenas agree with the covariance in the median.
-constexpr double kResidual_m = 0.12;
-
-/// Tangents are only known to a few degrees: what a point seems to tell about sliding along its own line is noise.
-constexpr double kTangentNoise = 0.10;
-
 /// As far as a position can be off and still be near.
 constexpr double kUnknown_m = 10.0;
 
@@ -36,16 +29,16 @@ double match_probability(const PoseHypothesis& best, double margin) {
   return 1.0 / (1.0 + std::exp(-std::min(log_odds, lead)));
 }
 
-Eigen::Matrix3d pose_covariance(const LineFit& fit) {
+Eigen::Matrix3d pose_covariance(const LineFit& fit, const LineNoise& noise) {
   // Angles are scaled to the metres that they move a point by, so that all eigenvalues compare.
   const double lever_m = std::max(fit.lever_m, 0.1);
   const Eigen::Vector3d scale(1.0, 1.0, 1.0 / lever_m);
   const Eigen::Matrix3d information = scale.asDiagonal() * fit.information * scale.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(information);
-  const double noise = kTangentNoise * kTangentNoise * fit.partners;
-  const double least = (kResidual_m / kUnknown_m) * (kResidual_m / kUnknown_m);
+  const double seeming = noise.tangent * noise.tangent * fit.partners;
+  const double least = (noise.residual_m / kUnknown_m) * (noise.residual_m / kUnknown_m);
   const Eigen::Vector3d variances =
-      kResidual_m * kResidual_m * (eigen.eigenvalues().array() - noise).max(least).inverse().matrix();
+      noise.residual_m * noise.residual_m * (eigen.eigenvalues().array() - seeming).max(least).inverse().matrix();
   const Eigen::Matrix3d scaled = eigen.eigenvectors() * variances.asDiagonal() * eigen.eigenvectors().transpose();
   return scale.asDiagonal() * scaled * scale.asDiagonal();
 }

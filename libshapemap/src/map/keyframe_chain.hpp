@@ -35,6 +35,7 @@ struct AttachedScan {
 struct KeyframeLink {
   std::vector<PoseHypothesis> hypotheses;  ///< none: another log starts here, or nothing fits
   Choice choice;
+  std::size_t num_of_chain = 0;  ///< where the link was revised: the hypotheses before that, which come first
 };
 
 struct KeyframeChain {

@@ -6,10 +6,12 @@
 #include "chains.hpp"
 #include "keyframe_chain.hpp"
 #include "keyframe_map.hpp"
+#include "link_doubts.hpp"
 #include "shapemap/align/robust_align.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/graph/loop_closing.hpp"
 #include "shapemap/scan/joined_logs.hpp"
+#include "sub_scan_poses.hpp"
 
 namespace shapemap {
 namespace {
@@ -17,9 +19,9 @@ namespace {
 /// Gives each position of the log its place in `result`.
 class Placing {
  public:
-  Placing(const Log& log, const KeyframeChain& chain, const KeyframeMap& map, const MappingOptions& options,
-          TraceSink* sink, MapResult& result)
-      : log_(log), chain_(chain), map_(map), options_(options), sink_(sink), result_(result) {}
+  Placing(const Log& log, const KeyframeChain& chain, const KeyframeMap& map, const SubScanCorrections& sub_scans,
+          const MappingOptions& options, TraceSink* sink, MapResult& result)
+      : log_(log), chain_(chain), map_(map), sub_scans_(sub_scans), options_(options), sink_(sink), result_(result) {}
 
   void run() {
     auto attached = chain_.attached.begin();
@@ -39,7 +41,8 @@ class Placing {
     if (i > 0) judge(i - 1, outcome);
     outcome.fragment = fragment_of(i);
     outcome.starts_fragment = i == 0 || map_.component[i] != map_.component[i - 1];
-    add(outcome, map_.map_from_keyframe[i]);
+    PlacedPosition& placed = add(outcome, map_.map_from_keyframe[i]);
+    if (!sub_scans_.empty()) placed.robot_from_sub_scan = sub_scans_[i];
   }
 
   /// What the alignment to the keyframe before says, now that the whole map has.
@@ -82,18 +85,21 @@ class Placing {
     return found->second;
   }
 
-  void add(const PositionResult& outcome, const Pose2& map_from_robot) {
+  PlacedPosition& add(const PositionResult& outcome, const Pose2& map_from_robot) {
     PlacedPosition placed;
     placed.position_index = outcome.position_index;
     placed.timestamp_s = outcome.timestamp_s;
     placed.map_from_robot = map_from_robot;
     placed.robot_from_sub_scan.resize(log_.positions[placed.position_index].sub_scans.size());
-    result_.fragments[static_cast<std::size_t>(outcome.fragment)].positions.push_back(std::move(placed));
+    std::vector<PlacedPosition>& positions = result_.fragments[static_cast<std::size_t>(outcome.fragment)].positions;
+    positions.push_back(std::move(placed));
+    return positions.back();
   }
 
   const Log& log_;
   const KeyframeChain& chain_;
   const KeyframeMap& map_;
+  const SubScanCorrections& sub_scans_;
   const MappingOptions& options_;
   TraceSink* sink_;
   MapResult& result_;
@@ -110,16 +116,31 @@ KeyframeMap map_of(const KeyframeChain& chain, const MappingOptions& options, Ru
   }
 }
 
+/// Links that were revised have more to choose from than when they were made.
+void trace_revised(const KeyframeChain& chain, TraceSink& sink) {
+  for (std::size_t i = 0; i < chain.links.size(); ++i) {
+    const KeyframeLink& link = chain.links[i];
+    if (link.num_of_chain == 0 || link.num_of_chain == link.hypotheses.size()) continue;
+    sink.on_link(
+        {chain.keyframes[i].position_index, chain.keyframes[i + 1].position_index, link.hypotheses, link.num_of_chain});
+  }
+}
+
 }  // namespace
 
 void map_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
                   AlignmentStore* store, MapResult& result) {
-  const KeyframeChain chain = chain_keyframes(log, options, observer, sink, store, result);
+  KeyframeChain chain = chain_keyframes(log, options, observer, sink, store, result);
   const auto start = std::chrono::steady_clock::now();
   KeyframeMap map = map_of(chain, options, observer, store);
+  SubScanCorrections sub_scans = refine_sub_scans_of_map(log, chain, options, observer, map);
+  if (options.loops.close_loops && revise_doubtful_links(options, observer, chain, map)) {
+    sub_scans = refine_sub_scans_of_map(log, chain, options, observer, map);
+  }
   result.times.loops_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.loops = std::move(map.loops);
-  Placing(log, chain, map, options, sink, result).run();
+  if (sink) trace_revised(chain, *sink);
+  Placing(log, chain, map, sub_scans, options, sink, result).run();
   if (!observer.keep_going()) throw Interrupted();
 }
 

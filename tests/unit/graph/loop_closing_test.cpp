@@ -47,7 +47,7 @@ struct Ring {
   }
 
   LoopSolution closed(const std::vector<LoopCluster>& clusters, RunObserver& observer, int threads = 1) const {
-    return close_loops(views, links, clusters, {}, {}, threads, observer);
+    return close_loops(views, links, {}, clusters, {}, {}, threads, observer);
   }
   LoopSolution closed(const std::vector<LoopCluster>& clusters, int threads = 1) const {
     RunObserver nobody;
@@ -159,7 +159,7 @@ struct TwoWalks {
 
   LoopSolution closed(const std::vector<LoopCluster>& clusters) const {
     RunObserver nobody;
-    return close_loops(views, links, clusters, {}, {}, 1, nobody);
+    return close_loops(views, links, {}, clusters, {}, {}, 1, nobody);
   }
 
   static constexpr std::size_t kFirst = 16;
@@ -242,7 +242,7 @@ TEST(CloseLoops, IsTheSameToTheBitForAnyNumberOfThreads) {
 TEST(CloseLoops, OfOneNodeIsThatNode) {
   RunObserver nobody;
   const test::Views views = test::views_along(test::ring_world(1), test::ring_walk(1, 1));
-  const LoopSolution solution = close_loops(views, {}, {}, {}, {}, 1, nobody);
+  const LoopSolution solution = close_loops(views, {}, {}, {}, {}, {}, 1, nobody);
   ASSERT_EQ(solution.map_from_node.size(), 1U);
   EXPECT_THAT(solution.map_from_node[0], HasSameBits(Pose2{}));
   EXPECT_THAT(solution.component, ElementsAre(0));

@@ -18,8 +18,17 @@ inline constexpr double kFullMargin = 20.0;
 /// The margin of the first of distinct hypotheses, best first.
 double lead_of_first(const std::vector<PoseHypothesis>& hypotheses);
 
+/// What a point tells of a pose by its line.
+struct LineNoise {
+  /// Spread of a point about its line, larger than it is: neighbouring points err alike, which makes many count as few.
+  /// Set so that errors on simulated arenas agree with the covariance in the median.
+  double residual_m = 0.12;
+  /// Tangents are only known to a few degrees: what a point seems to tell about sliding along its own line is noise.
+  double tangent = 0.10;
+};
+
 /// Covariance of (x, y, theta) from the lines that hold the pose; a direction that none holds gets metres.
-Eigen::Matrix3d pose_covariance(const LineFit& fit);
+Eigen::Matrix3d pose_covariance(const LineFit& fit, const LineNoise& noise = {});
 
 /// Standard deviation in the direction in which a position is held worst.
 double worst_deviation_m(const Eigen::Matrix3d& covariance);

@@ -4,9 +4,11 @@
 #include "shapemap/align/align.hpp"
 #include "shapemap/align/robust_align.hpp"
 #include "shapemap/core/options.hpp"
+#include "shapemap/graph/link_revision.hpp"
 #include "shapemap/graph/loop_closing.hpp"
 #include "shapemap/graph/loop_hypotheses.hpp"
 #include "shapemap/graph/map_refinement.hpp"
+#include "shapemap/graph/sub_scan_refinement.hpp"
 #include "shapemap/scan/returns.hpp"
 #include "shapemap/shape/polyline_em.hpp"
 #include "shapemap/shape/shape.hpp"
@@ -93,6 +95,8 @@ struct MappingOptions {
   LoopSearchOptions loop_search;
   LoopClosingOptions loop_closing;
   RefinementOptions refinement;
+  LinkRevisionOptions link_revision;
+  SubScanOptions sub_scans;
   AlignOptions align;  ///< of the paper's method
   ChainOptions chain;
 
@@ -114,6 +118,8 @@ struct MappingOptions {
     visit("Robust method: places that look alike", self.loop_search);
     visit("Robust method: closing loops", self.loop_closing);
     visit("Robust method: the whole map", self.refinement);
+    visit("Robust method: doubtful links", self.link_revision);
+    visit("Robust method: sub-scans", self.sub_scans);
     visit("Paper's method: histograms", self.align.histogram);
     visit("Paper's method: similarity", self.align.similarity);
     visit("Paper's method: rotations", self.align.rotation);

@@ -51,6 +51,7 @@ struct TraceSink {
   /// All that the method looks at of a position, in the robot's frame.
   virtual void on_shape(std::size_t /*position_index*/, const std::vector<ShapePoint>& /*points*/) {}
   virtual void on_alignment(const TracedAlignment& /*alignment*/) {}
+  /// Again for a link that was revised, with the hypotheses that this added behind the others.
   virtual void on_link(const TracedLink& /*link*/) {}
   /// After all links.
   virtual void on_choice(const TracedChoice& /*choice*/) {}

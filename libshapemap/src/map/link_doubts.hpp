@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "keyframe_chain.hpp"
+#include "keyframe_map.hpp"
+
+namespace shapemap {
+
+/// Revises the doubtful links of `map` that alone join what is before them to what comes after, by all scans of both;
+/// see revise_links(). What bridges over a link say of it is added to its hypotheses in `chain`. Whether anything
+/// changed: poses of pieces that are not joined any more then lie far apart.
+bool revise_doubtful_links(const MappingOptions& options, RunObserver& observer, KeyframeChain& chain,
+                           KeyframeMap& map);
+
+}  // namespace shapemap
