@@ -47,6 +47,7 @@ using PiecePair = std::pair<std::size_t, std::size_t>;
 struct Lead {
   Way best;
   double lead = 0.0;
+  bool is_stale = false;  ///< one of the pieces has grown since
 };
 
 double log_odds(double probability) {
@@ -101,6 +102,10 @@ class Assembly {
       const auto next = std::max_element(leads_.begin(), leads_.end(), [](const auto& one, const auto& other) {
         return one.second.lead < other.second.lead;
       });
+      if (next->second.is_stale) {
+        next->second = lead_of(next->first);
+        continue;
+      }
       if (next->second.lead < 0.0) break;
       const PiecePair pair = next->first;
       const Way way = std::move(next->second.best);
@@ -158,6 +163,7 @@ class Assembly {
       pose_[n] = way.f_from_g * pose_[n];
       piece_[n] = f;
     }
+    const bool f_is_smaller = nodes_[f].size() < nodes_[g].size();
     std::vector<std::size_t> all;
     std::merge(nodes_[f].begin(), nodes_[f].end(), nodes_[g].begin(), nodes_[g].end(), std::back_inserter(all));
     nodes_[f] = std::move(all);
@@ -168,17 +174,23 @@ class Assembly {
     between_.erase(pair);
     leads_.erase(pair);
     if (!continues) solve(f);  // else nothing bends
-    for (const PiecePair& other : inherit(f, g)) leads_[other] = lead_of(other);
+    for (const PiecePair& other : inherit(f, g, f_is_smaller)) leads_[other] = lead_of(other);
   }
 
-  /// What joined `g` to others now joins `f`; all pairs that changed.
-  std::vector<PiecePair> inherit(std::size_t f, std::size_t g) {
+  /// What joined `g` to others now joins `f`. Returns the pairs that new joints have come to, or to which the smaller
+  /// of the two belonged; to others too little is new to look again before it is their turn.
+  std::vector<PiecePair> inherit(std::size_t f, std::size_t g, bool f_is_smaller) {
     std::vector<PiecePair> changed;
     std::vector<PiecePair> gone;
     for (const auto& entry : between_) {
       const auto [one, other] = entry.first;
       if (one == g || other == g) gone.push_back(entry.first);
-      if (one == f || other == f) changed.push_back(entry.first);
+      if (one != f && other != f) continue;
+      if (f_is_smaller) {
+        changed.push_back(entry.first);
+      } else {
+        leads_[entry.first].is_stale = true;
+      }
     }
     for (const PiecePair& old : gone) {
       const std::size_t third = old.first == g ? old.second : old.first;

@@ -19,6 +19,9 @@ constexpr double kDrift_rad = 0.15 * kDegree;
 /// Scans see the same walls: witnesses do not add up without limit.
 constexpr double kMostStrength = 20.0;
 
+/// Of two pieces; further ones start from joints that are worth little.
+constexpr std::size_t kMostWays = 16;
+
 /// What a joint counts for in the mean, at least; and its direction, against its place: as if the scan were so large.
 constexpr double kLeastWeight = 0.1;
 constexpr double kSquaredSize_m2 = 4.0;
@@ -27,47 +30,42 @@ std::size_t apart(std::size_t i, std::size_t j) { return i < j ? j - i : i - j; 
 
 }  // namespace
 
-PoseConstraint PieceJoints::from_piece(std::size_t f, std::size_t joint) const {
-  PoseConstraint constraint = joints_[joint].constraint;
-  if (piece_of_node_[constraint.a] == f) return constraint;
-  std::swap(constraint.a, constraint.b);
-  constraint.a_from_b = inverse(constraint.a_from_b);
-  return constraint;
+PieceJoints::Seen PieceJoints::seen_from(std::size_t f, std::size_t joint) const {
+  const PoseConstraint& c = joints_[joint].constraint;
+  const double worth = joints_[joint].worth;
+  if (piece_of_node_[c.a] == f) {
+    return {joint, c.a, c.b, piece_from_node_[c.a] * c.a_from_b, piece_from_node_[c.b], worth};
+  }
+  return {joint, c.b, c.a, piece_from_node_[c.b] * inverse(c.a_from_b), piece_from_node_[c.a], worth};
 }
 
-bool PieceJoints::agrees(std::size_t f, const Pose2& f_from_g, std::size_t joint, std::size_t seed) const {
-  const PoseConstraint c = from_piece(f, joint);
-  const PoseConstraint s = from_piece(f, seed);
-  const Pose2 expected = inverse(piece_from_node_[c.a]) * f_from_g * piece_from_node_[c.b];
-  const Pose2 off = inverse(c.a_from_b) * expected;
-  const auto nodes = static_cast<double>(apart(c.a, s.a) + apart(c.b, s.b));
-  return off.translation().norm() < kSame_m + kDrift_m * nodes &&
-         std::abs(off.theta_rad) < kSame_rad + kDrift_rad * nodes;
+bool PieceJoints::agree(const Pose2& f_from_g, const Seen& one, const Seen& seed) {
+  const Pose2 expected = f_from_g * one.g_from_b;
+  const auto nodes = static_cast<double>(apart(one.a, seed.a) + apart(one.b, seed.b));
+  return (expected.translation() - one.f_from_b.translation()).norm() < kSame_m + kDrift_m * nodes &&
+         angle_between(expected.theta_rad, one.f_from_b.theta_rad) < kSame_rad + kDrift_rad * nodes;
 }
 
 /// The weighted mean of places and directions (Umeyama 1991).
-Pose2 PieceJoints::mean_of(std::size_t f, const std::vector<std::size_t>& joints) const {
+Pose2 PieceJoints::mean_of(const std::vector<Seen>& joints) {
   Point2 mean_f = Point2::Zero();
   Point2 mean_g = Point2::Zero();
   double sum = 0.0;
-  for (const std::size_t joint : joints) {
-    const PoseConstraint c = from_piece(f, joint);
-    const double weight = joints_[joint].worth + kLeastWeight;
-    mean_f += weight * (piece_from_node_[c.a] * c.a_from_b).translation();
-    mean_g += weight * piece_from_node_[c.b].translation();
+  for (const Seen& joint : joints) {
+    const double weight = joint.worth + kLeastWeight;
+    mean_f += weight * joint.f_from_b.translation();
+    mean_g += weight * joint.g_from_b.translation();
     sum += weight;
   }
   mean_f /= sum;
   mean_g /= sum;
   double sine = 0.0;
   double cosine = 0.0;
-  for (const std::size_t joint : joints) {
-    const PoseConstraint c = from_piece(f, joint);
-    const double weight = joints_[joint].worth + kLeastWeight;
-    const Pose2 there = piece_from_node_[c.a] * c.a_from_b;
-    const Point2 p = there.translation() - mean_f;
-    const Point2 q = piece_from_node_[c.b].translation() - mean_g;
-    const double turn_rad = there.theta_rad - piece_from_node_[c.b].theta_rad;
+  for (const Seen& joint : joints) {
+    const double weight = joint.worth + kLeastWeight;
+    const Point2 p = joint.f_from_b.translation() - mean_f;
+    const Point2 q = joint.g_from_b.translation() - mean_g;
+    const double turn_rad = joint.f_from_b.theta_rad - joint.g_from_b.theta_rad;
     sine += weight * (q.x() * p.y() - q.y() * p.x() + kSquaredSize_m2 * std::sin(turn_rad));
     cosine += weight * (q.dot(p) + kSquaredSize_m2 * std::cos(turn_rad));
   }
@@ -77,13 +75,14 @@ Pose2 PieceJoints::mean_of(std::size_t f, const std::vector<std::size_t>& joints
 }
 
 /// As that of a cluster of loops: the best joint of each node, summed over the side that says less.
-double PieceJoints::strength(std::size_t f, const std::vector<std::size_t>& joints) const {
+double PieceJoints::strength(const std::vector<Seen>& joints) {
   std::map<std::size_t, double> by_f;
   std::map<std::size_t, double> by_g;
-  for (const std::size_t joint : joints) {
-    const PoseConstraint c = from_piece(f, joint);
-    by_f[c.a] = std::max(by_f[c.a], joints_[joint].worth);
-    by_g[c.b] = std::max(by_g[c.b], joints_[joint].worth);
+  for (const Seen& joint : joints) {
+    double& of_a = by_f[joint.a];
+    double& of_b = by_g[joint.b];
+    of_a = std::max(of_a, joint.worth);
+    of_b = std::max(of_b, joint.worth);
   }
   double of_f = 0.0;
   double of_g = 0.0;
@@ -92,22 +91,26 @@ double PieceJoints::strength(std::size_t f, const std::vector<std::size_t>& join
   return std::min({of_f, of_g, kMostStrength});
 }
 
-std::vector<Way> PieceJoints::ways(std::size_t f, std::vector<std::size_t> between) const {
-  std::stable_sort(between.begin(), between.end(),
-                   [&](std::size_t i, std::size_t j) { return joints_[i].worth > joints_[j].worth; });
+std::vector<Way> PieceJoints::ways(std::size_t f, const std::vector<std::size_t>& between) const {
+  std::vector<Seen> seen;
+  for (const std::size_t joint : between) seen.push_back(seen_from(f, joint));
+  std::stable_sort(seen.begin(), seen.end(),
+                   [](const Seen& one, const Seen& other) { return one.worth > other.worth; });
   std::vector<Way> found;
   std::set<std::size_t> used;
-  for (const std::size_t seed : between) {
-    if (used.count(seed) != 0) continue;
-    const PoseConstraint s = from_piece(f, seed);
+  for (const Seen& seed : seen) {
+    if (found.size() == kMostWays) break;
+    if (used.count(seed.joint) != 0) continue;
     Way way;
-    way.f_from_g = piece_from_node_[s.a] * s.a_from_b * inverse(piece_from_node_[s.b]);
-    for (const std::size_t joint : between) {
-      if (agrees(f, way.f_from_g, joint, seed)) way.joints.push_back(joint);
+    std::vector<Seen> agreeing;
+    const Pose2 f_from_g = seed.f_from_b * inverse(seed.g_from_b);
+    for (const Seen& joint : seen) {
+      if (agree(f_from_g, joint, seed)) agreeing.push_back(joint);
     }
+    for (const Seen& joint : agreeing) way.joints.push_back(joint.joint);
     used.insert(way.joints.begin(), way.joints.end());
-    way.f_from_g = mean_of(f, way.joints);
-    way.gain = strength(f, way.joints) + joints_[seed].noise;
+    way.f_from_g = mean_of(agreeing);
+    way.gain = strength(agreeing) + joints_[seed.joint].noise;
     found.push_back(std::move(way));
   }
   return found;

@@ -30,17 +30,27 @@ class PieceJoints {
               const std::vector<std::size_t>& piece_of_node)
       : joints_(joints), piece_from_node_(piece_from_node), piece_of_node_(piece_of_node) {}
 
-  /// All that some of `between`, the joints of `f` and another piece, agree on. Each joint is part of a way.
-  std::vector<Way> ways(std::size_t f, std::vector<std::size_t> between) const;
+  /// What some of `between`, the joints of `f` and another piece, agree on; those of the best joints first, and no more
+  /// than can be right.
+  std::vector<Way> ways(std::size_t f, const std::vector<std::size_t>& between) const;
 
   /// Whether a joint within a piece agrees with it.
   bool holds(const Joint& joint) const;
 
  private:
-  PoseConstraint from_piece(std::size_t f, std::size_t joint) const;
-  bool agrees(std::size_t f, const Pose2& f_from_g, std::size_t joint, std::size_t seed) const;
-  Pose2 mean_of(std::size_t f, const std::vector<std::size_t>& joints) const;
-  double strength(std::size_t f, const std::vector<std::size_t>& joints) const;
+  /// A joint as from piece `f` to the other.
+  struct Seen {
+    std::size_t joint;
+    std::size_t a;  ///< in `f`
+    std::size_t b;
+    Pose2 f_from_b;  ///< by the joint
+    Pose2 g_from_b;
+    double worth;
+  };
+  Seen seen_from(std::size_t f, std::size_t joint) const;
+  static bool agree(const Pose2& f_from_g, const Seen& one, const Seen& seed);
+  static Pose2 mean_of(const std::vector<Seen>& joints);
+  static double strength(const std::vector<Seen>& joints);
 
   const std::vector<Joint>& joints_;
   const std::vector<Pose2>& piece_from_node_;
