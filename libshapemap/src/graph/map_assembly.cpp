@@ -150,10 +150,17 @@ class Assembly {
     return {ways[0], ways[0].gain - second};
   }
 
+  /// Whether all that is known of how the two pieces lie to each other is of one pair of scans.
+  bool is_hinge(const Way& way) const {
+    const PoseConstraint& first = joints_[way.joints.front()].constraint;
+    return std::all_of(way.joints.begin(), way.joints.end(), [&](std::size_t joint) {
+      const PoseConstraint& constraint = joints_[joint].constraint;
+      return constraint.a == first.a && constraint.b == first.b;
+    });
+  }
+
   void lay_together(const PiecePair& pair, const Way& way) {
     const auto [f, g] = pair;
-    const std::vector<Crossing> crossed = crossings(nodes_[f], nodes_[g]);
-    const bool continues = crossed.size() == 1 && crossed.front().num_steps == 1;
     for (const std::size_t n : nodes_[g]) {
       pose_[n] = way.f_from_g * pose_[n];
       piece_[n] = f;
@@ -167,7 +174,7 @@ class Assembly {
     }
     between_.erase(pair);
     leads_.erase(pair);
-    if (!continues) solve(f);  // else nothing bends
+    if (!is_hinge(way)) solve(f);  // else nothing bends
     for (const PiecePair& other : inherit(f, g)) leads_[other] = lead_of(other);
   }
 
