@@ -140,16 +140,19 @@ TEST(AssembledMap, BridgesALinkThatHasNoRightAlternative) {
   EXPECT_LT(test::worst_off_m(walk.assembled(wrong), test::chained(walk.right)), 1.0) << "the scans tell";
 }
 
-/// The walk comes back to where it began, with a piece that swings freely about one link.
+/// The walk comes back to where it began. What the chain has drifted until then is spread over all of it, and is not
+/// left to the one link that is doubtful.
 TEST(AssembledMap, IsBentToWhatItsHypothesesSay) {
-  Walk walk(0.25 * kDegree);
-  walk.links[30].probability = 0.6;
-  const std::vector<LoopHypothesis> again = test::cluster_of(walk.truth, 0, kRingLap, 8, 0.0).members;
-  const double before_m = test::worst_off_m(walk.assembled(), walk.truth);
-  ASSERT_GT(before_m, 0.7);
-  const std::vector<Pose2> map = walk.assembled(again);
-  EXPECT_LT(test::worst_off_m(map, walk.truth), 0.5 * before_m);
-  EXPECT_GT(walk.worth(map), walk.worth(walk.chain()) + 10.0);
+  for (const double drift_deg : {0.1, 0.15}) {
+    Walk walk(drift_deg * kDegree);
+    walk.links[30].probability = 0.6;
+    const std::vector<LoopHypothesis> again = test::cluster_of(walk.truth, 0, kRingLap, 8, 0.0).members;
+    ASSERT_GT(test::worst_off_m(walk.assembled(), walk.truth), 0.5);
+    const std::vector<Pose2> map = walk.assembled(again);
+    EXPECT_LT(test::worst_off_m(map, walk.truth), 0.2);
+    EXPECT_THAT(inverse(map[30]) * map[31], IsNearPose(walk.links[30].alternatives[0].a_from_b, 0.05, 1 * kDegree));
+    EXPECT_GT(walk.worth(map), walk.worth(walk.chain()) + 50.0);
+  }
 }
 
 TEST(AssembledMap, NeverLaysPiecesOfDifferentLogsTogether) {
@@ -200,9 +203,25 @@ TEST(AssembledMap, DiffersBetweenVariantsWhereItIsDoubtful) {
   EXPECT_LT(as_the_chain, kVariants - 4);
 }
 
-TEST(AssembledMap, StoppedAtAnyTimeHasTheRestFromTheChain) {
+/// At a corner of the ring the first decision is wrong; it is not in all variants, and the evidence tells which.
+TEST(AssembledMap, IsRightInSomeVariantWhereTheFirstIsNot) {
   Walk walk;
   for (const std::size_t node : {10U, 25U, 40U}) walk.turn_node(node);
+  std::vector<Pose2> best = walk.assembled();
+  const double first_worth = walk.worth(best);
+  double most = first_worth;
+  for (int variant = 1; variant < 6; ++variant) {
+    const std::vector<Pose2> map = walk.assembled({}, variant);
+    if (walk.worth(map) > most) best = map;
+    most = std::max(most, walk.worth(map));
+  }
+  EXPECT_GT(most, first_worth + 20.0);
+  expect_same_map(best, test::chained(walk.right));
+}
+
+TEST(AssembledMap, StoppedAtAnyTimeHasTheRestFromTheChain) {
+  Walk walk;
+  for (const std::size_t node : {10U, 20U, 40U}) walk.turn_node(node);
   test::Patience patient(1000);
   const std::vector<Pose2> whole = walk.assembled({}, patient);
   expect_same_map(whole, test::chained(walk.right));
@@ -216,7 +235,7 @@ TEST(AssembledMap, StoppedAtAnyTimeHasTheRestFromTheChain) {
     for (std::size_t i = 0; i < walk.links.size(); ++i) {
       const Pose2 step = inverse(map[i]) * map[i + 1];
       const Pose2 by_chain = walk.links[i].alternatives[0].a_from_b;
-      if (IsNearPose(by_chain, 1e-6, 1e-6).MatchAndExplain(step, nullptr)) continue;
+      if (testing::Value(step, IsNearPose(by_chain, 1e-6, 1e-6))) continue;
       EXPECT_THAT(step, IsNearPose(walk.right[i].alternatives[0].a_from_b, 1e-6, 1e-6)) << i;
       ++changed;
     }

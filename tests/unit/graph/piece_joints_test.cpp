@@ -137,10 +137,10 @@ TEST(Ways, ThatAllJointsSayAreOneWayThere) {
     const std::vector<Way> ways = pieces.ways();
     ASSERT_EQ(ways.size(), 1U) << seed;
     EXPECT_EQ(ways[0].joints.size(), 12U);
-    EXPECT_THAT(ways[0].f_from_g, IsNearPose(pieces.f_from_g, 0.15, 1.2 * kDegree)) << seed;
+    EXPECT_THAT(ways[0].f_from_g, IsNearPose(pieces.f_from_g, 0.20, 1.2 * kDegree)) << seed;
     const std::vector<Way> other_way = pieces.ways(kG);
     ASSERT_EQ(other_way.size(), 1U) << seed;
-    EXPECT_THAT(inverse(other_way[0].f_from_g), IsNearPose(pieces.f_from_g, 0.15, 1.2 * kDegree)) << seed;
+    EXPECT_THAT(inverse(other_way[0].f_from_g), IsNearPose(pieces.f_from_g, 0.20, 1.2 * kDegree)) << seed;
   }
 }
 
@@ -211,8 +211,8 @@ TwoPieces doubtful_pieces(unsigned seed) {
   const std::vector<Pose2> said{pieces.f_from_g, Pose2{0.35, 0.0, 0.0} * pieces.f_from_g,
                                 pieces.f_from_g * Pose2{0.0, 0.1, 7 * kDegree}, pieces.f_from_g * Pose2{2.0, 0.0, 2.0}};
   std::uniform_real_distribution<double> noise(-4.0, 4.0);
-  for (std::size_t k = 0; k < 10 + 2 * seed; ++k) {
-    pieces.add(said[pieces.rng() % said.size()], pieces.any_worth(), 0.12, noise(pieces.rng));
+  for (std::size_t k = 0; k < 10U + 2U * seed; ++k) {
+    pieces.add(said[static_cast<std::size_t>(pieces.rng()) % said.size()], pieces.any_worth(), 0.12, noise(pieces.rng));
   }
   return pieces;
 }
@@ -233,7 +233,7 @@ TEST(Ways, HoldAllThatAgreesWithTheSurestThatIsLeft) {
       for (std::size_t k = 0; k < pieces.joints.size(); ++k) {
         if (!says_the_same(pieces, surest, k)) continue;
         expected.push_back(k);
-        num_shared += left.erase(k) == 0 ? 1 : 0;
+        num_shared += left.erase(k) == 0 ? 1U : 0U;
       }
       EXPECT_THAT(way.joints, testing::UnorderedElementsAreArray(expected)) << seed;
       EXPECT_NEAR(way.gain, strength_of(pieces, way.joints) + pieces.joints[surest].noise, 1e-9) << seed;
