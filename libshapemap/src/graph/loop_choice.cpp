@@ -89,7 +89,9 @@ LoopChoice LoopProblem::of_map(std::vector<Pose2> map_from_node) {
       if (agrees(inverse(links_[i].alternatives[k].a_from_b) * taken)) choice.link_choice[i] = static_cast<int>(k);
     }
   }
-  for (std::size_t k = 0; k < clusters_.size(); ++k) choice.accepted[k] = agrees(off(choice, k)) ? 1 : 0;
+  for (std::size_t k = 0; k < clusters_.size(); ++k) {
+    choice.accepted[k] = clusters_[k].strength >= kLeastStrength && agrees(off(choice, k)) ? 1 : 0;
+  }
   for (std::size_t i = 0; i < links_.size(); ++i) {  // what nothing else joins stays with the chain
     if (choice.link_choice[i] != kCut || !links_[i].exists()) continue;
     const std::vector<std::size_t> part = connected_parts(num_nodes_, constraints(choice));

@@ -15,6 +15,9 @@ namespace shapemap {
 inline constexpr double kAgrees_m = 0.35;
 inline constexpr double kAgrees_rad = 4 * kDegree;
 
+/// Weaker clusters are of no account.
+inline constexpr double kLeastStrength = 4.0;
+
 /// What has been decided about loops and links, and the map that follows.
 struct LoopChoice {
   std::vector<int> link_choice;

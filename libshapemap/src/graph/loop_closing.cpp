@@ -14,7 +14,6 @@ namespace {
 constexpr double kContradicts_m = 1.0;
 constexpr double kContradicts_rad = 10 * kDegree;
 
-constexpr double kLeastStrength = 4.0;
 constexpr double kStrong = 10.0;
 constexpr double kVeryDoubtful = 0.65;
 /// No more maps are assembled when so many in a row are not better by this share.

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <map>
 #include <random>
+#include <set>
 #include <utility>
 
 #include "piece_joints.hpp"
@@ -155,10 +156,17 @@ class Assembly {
     return {ways[0], ways[0].gain - second};
   }
 
+  /// Whether all that is known of how the two pieces lie to each other is of one pair of scans.
+  bool is_hinge(const Way& way) const {
+    const PoseConstraint& first = joints_[way.joints.front()].constraint;
+    return std::all_of(way.joints.begin(), way.joints.end(), [&](std::size_t joint) {
+      const PoseConstraint& constraint = joints_[joint].constraint;
+      return constraint.a == first.a && constraint.b == first.b;
+    });
+  }
+
   void lay_together(const PiecePair& pair, const Way& way) {
     const auto [f, g] = pair;
-    const std::vector<Crossing> crossed = crossings(nodes_[f], nodes_[g]);
-    const bool continues = crossed.size() == 1 && crossed.front().num_steps == 1;
     for (const std::size_t n : nodes_[g]) {
       pose_[n] = way.f_from_g * pose_[n];
       piece_[n] = f;
@@ -173,7 +181,7 @@ class Assembly {
     }
     between_.erase(pair);
     leads_.erase(pair);
-    if (!continues) solve(f);  // else nothing bends
+    if (!is_hinge(way)) solve(f, way.joints);  // else nothing bends
     for (const PiecePair& other : inherit(f, g, f_is_smaller)) leads_[other] = lead_of(other);
   }
 
@@ -206,8 +214,9 @@ class Assembly {
     return changed;
   }
 
-  /// A piece is held by its sure links and by all joints that agree with it.
-  void solve(std::size_t f) {
+  /// A piece is held by its sure links, by the joints that were decided on, `taken`, and by all others that agree with
+  /// it.
+  void solve(std::size_t f, const std::vector<std::size_t>& taken) {
     const std::vector<std::size_t>& nodes = nodes_[f];
     const auto number = [&](std::size_t n) {
       return static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), n) - nodes.begin());
@@ -226,8 +235,9 @@ class Assembly {
       add({n, n + 1, link.a_from_b, link.covariance, 0.0});
     }
     const PieceJoints pieces(joints_, pose_, piece_);
+    const std::set<std::size_t> decided(taken.begin(), taken.end());
     for (const std::size_t joint : within_[f]) {
-      if (pieces.holds(joints_[joint])) add(joints_[joint].constraint);
+      if (decided.count(joint) != 0 || pieces.holds(joints_[joint])) add(joints_[joint].constraint);
     }
     const std::vector<Pose2> solved = solve_pose_graph(poses, constraints, kIterations).map_from_node;
     for (std::size_t k = 0; k < nodes.size(); ++k) pose_[nodes[k]] = solved[k];

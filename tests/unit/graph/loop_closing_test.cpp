@@ -8,6 +8,7 @@
 
 #include "shapemap/graph/map_evidence.hpp"
 #include "support/matchers.hpp"
+#include "support/patience.hpp"
 #include "support/ring_walk.hpp"
 
 namespace shapemap {
@@ -15,24 +16,13 @@ namespace {
 
 using test::HasSameBits;
 using test::kRingLap;
+using test::Patience;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 constexpr std::size_t kAgain = 8;  // steps that are walked a second time
 constexpr double kGood_m = 0.35;
-
-/// Says yes `times` times.
-struct Patience : RunObserver {
-  explicit Patience(std::size_t times) : left(times) {}
-  bool keep_going() override {
-    ++asked;
-    if (left > 0) --left;
-    return left > 0;
-  }
-  std::size_t left;
-  std::size_t asked = 0;
-};
 
 /// A ring that is walked once and a bit, with a chain that drifts to the left all the time.
 struct Ring {
@@ -144,6 +134,54 @@ TEST(CloseLoops, CutsALinkThatIsWrongWithoutAnAlternative) {
   for (std::size_t i = 0; i < ring.links.size(); ++i) EXPECT_EQ(solution.link_choice[i], i == kBad ? kCut : 0) << i;
   EXPECT_THAT(solution.component, Each(0)) << "the loop holds what comes after it";
   EXPECT_LT(test::worst_off_m(solution.map_from_node, ring.truth), 2 * kGood_m);
+}
+
+/// Link after link turned, so that the node between them looks the other way: taking the right alternative of one of
+/// the two alone makes the map worse.
+void turn_node(Ring& ring, std::size_t node) {
+  const Pose2 turned{0.0, 0.0, kPi};
+  for (const std::size_t i : {node - 1, node}) {
+    ChainLink& link = ring.links[i];
+    const Pose2 right = link.alternatives[0].a_from_b;
+    link.alternatives.push_back(link.alternatives[0]);
+    link.alternatives[0].a_from_b = i < node ? right * turned : turned * right;
+    link.alternatives[0].score = 1.0;
+    link.probability = 0.5;
+  }
+}
+
+TEST(CloseLoops, TakesTwoAlternativesThatOnlyTogetherAreBetter) {
+  Ring ring(0.1 * kDegree);
+  turn_node(ring, 20);
+  const LoopSolution solution = ring.closed({ring.again(12.0)});
+  for (std::size_t i = 0; i < ring.links.size(); ++i) {
+    EXPECT_EQ(solution.link_choice[i], i == 19 || i == 20 ? 1 : 0) << i;
+  }
+  EXPECT_THAT(solution.accepted, ElementsAre(0));
+  EXPECT_LT(test::worst_off_m(solution.map_from_node, ring.truth), kGood_m);
+}
+
+/// Several links are wrong; hypotheses that no cluster holds bridge those that have no other alternative.
+TEST(CloseLoops, IsAtLeastAsGoodWithHypothesesAsWithout) {
+  RunObserver nobody;
+  double gained = 0.0;
+  for (std::size_t bad = 8; bad <= 40; bad += 8) {
+    Ring ring(0.1 * kDegree);
+    turn_node(ring, bad + 4);
+    ChainLink::Alternative& wrong = ring.links[bad].alternatives[0];
+    wrong.a_from_b = wrong.a_from_b * Pose2{0.3, -0.5, 70 * kDegree};
+    ring.links[bad].probability = 0.3;
+    const std::vector<LoopCluster> clusters{test::cluster_of(ring.truth, bad - 1, bad + 1, 2, 8.0)};
+    const auto closed = [&](const std::vector<LoopHypothesis>& hypotheses) {
+      return close_loops(ring.views, ring.links, hypotheses, clusters, {}, {}, 1, nobody);
+    };
+    const LoopSolution with = closed(clusters[0].members);
+    const LoopSolution without = closed({});
+    EXPECT_GE(with.value, without.value) << bad;
+    EXPECT_LT(test::worst_off_m(with.map_from_node, ring.truth), 1.0) << bad;
+    gained += with.value - without.value;
+  }
+  EXPECT_GT(gained, 10.0);
 }
 
 /// Two walks along the same corridor, or along two of them; nothing tells where the second starts.

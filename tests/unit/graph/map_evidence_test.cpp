@@ -148,5 +148,99 @@ TEST(MapEvidence, IsTheSameToTheBitForAnyNumberOfThreads) {
   EXPECT_EQ(MapEvidence(ring.views, {}, 3).of(ring.truth), ring.evidence.of(ring.truth));
 }
 
+/// Two pieces of a map, each moved to a frame of its own, and what they say of each other.
+struct TwoPieces {
+  TwoPieces(const std::vector<Pose2>& truth, const std::vector<std::size_t>& of_f, std::vector<std::size_t> of_g)
+      : f(of_f), g(std::move(of_g)), pose(truth) {
+    for (const std::size_t n : g) pose[n] = inverse(f_from_g) * pose[n];
+  }
+
+  double between(MapEvidence& evidence, const Pose2& moved = {}) const {
+    return evidence.between(pose, f, g, moved * f_from_g);
+  }
+
+  /// How much a map is worth in which the pieces lie so, more than one in which they are far from each other.
+  double by_whole_maps(const test::Views& views, const Pose2& moved = {}) const {
+    std::vector<Pose2> together = pose;
+    std::vector<Pose2> apart = pose;
+    for (const std::size_t n : g) together[n] = moved * f_from_g * pose[n];
+    for (const std::size_t n : g) apart[n].x_m += 1000.0;
+    for (std::size_t n = 0; n < pose.size(); ++n) {  // what belongs to neither is far from both
+      if (std::count(f.begin(), f.end(), n) + std::count(g.begin(), g.end(), n) > 0) continue;
+      together[n] = apart[n] = {0.0, 1e4 * static_cast<double>(n + 1), 0.0};
+    }
+    return MapEvidence(views, {}, 1).of(together) - MapEvidence(views, {}, 1).of(apart);
+  }
+
+  Pose2 f_from_g{3.0, -40.0, 2.0};
+  std::vector<std::size_t> f;
+  std::vector<std::size_t> g;
+  std::vector<Pose2> pose;
+};
+
+/// Nodes `first` to `last`, without it, that `wanted` wants.
+template <class Wanted>
+std::vector<std::size_t> nodes(std::size_t first, std::size_t last, Wanted wanted) {
+  std::vector<std::size_t> chosen;
+  for (std::size_t n = first; n < last; ++n) {
+    if (wanted(n)) chosen.push_back(n);
+  }
+  return chosen;
+}
+const auto kAll = [](std::size_t) { return true; };
+
+TEST(MapEvidenceBetween, IsWhatAWholeMapGainsByThePairsOfBothPieces) {
+  Ring ring;
+  const auto even_threes = [](std::size_t n) { return n / 3 % 2 == 0; };
+  const auto odd_threes = [](std::size_t n) { return n / 3 % 2 == 1; };
+  const std::vector<TwoPieces> cases{{ring.truth, nodes(0, 12, kAll), nodes(46, 58, kAll)},
+                                     {ring.truth, nodes(46, 58, kAll), nodes(0, 12, kAll)},
+                                     {ring.truth, nodes(0, 30, even_threes), nodes(0, 30, odd_threes)},
+                                     {ring.truth, nodes(20, 21, kAll), nodes(22, 40, kAll)}};
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    const double right = cases[k].by_whole_maps(ring.views);
+    EXPECT_GT(right, 2.0) << k;
+    EXPECT_NEAR(cases[k].between(ring.evidence), right, 1e-3 * right) << k;
+    std::mt19937 rng(5);
+    for (int round = 0; round < 4; ++round) {
+      const Pose2 moved = test::random_pose(rng, 2.0, 0.5);
+      const double expected = cases[k].by_whole_maps(ring.views, moved);
+      MapEvidence fresh(ring.views, {}, 1);
+      EXPECT_NEAR(cases[k].between(fresh, moved), expected, 1e-3 * std::abs(expected) + 1e-3) << k;
+    }
+  }
+}
+
+TEST(MapEvidenceBetween, DoesNotDependOnWhichPieceComesFirst) {
+  Ring ring;
+  const TwoPieces pieces(ring.truth, nodes(0, 12, kAll), nodes(46, 58, kAll));
+  const double one = pieces.between(ring.evidence);
+  const double other =
+      MapEvidence(ring.views, {}, 1).between(pieces.pose, pieces.g, pieces.f, inverse(pieces.f_from_g));
+  EXPECT_NEAR(one, other, 1e-3 * one);
+}
+
+/// A walk so long that only a part of the pairs is asked.
+TEST(MapEvidenceBetween, OfManyPairsIsEstimatedWell) {
+  const std::vector<Pose2> truth = test::ring_walk(160, 2);
+  const test::Views views = test::views_along(test::ring_world(1), truth);
+  const TwoPieces pieces(truth, nodes(0, 100, kAll), nodes(100, 160, kAll));
+  for (const Pose2& moved : {Pose2{}, Pose2{1.0, -1.0, 0.2}}) {
+    MapEvidence evidence(views, {}, 1);
+    const double expected = pieces.by_whole_maps(views, moved);
+    EXPECT_NEAR(pieces.between(evidence, moved), expected, 0.15 * std::abs(expected));
+    MapEvidence by_three(views, {}, 3);
+    EXPECT_EQ(pieces.between(by_three, moved), pieces.between(evidence, moved)) << "to the bit";
+  }
+}
+
+TEST(MapEvidenceBetween, IsNoneOfPiecesThatDoNotMeet) {
+  Ring ring;
+  const TwoPieces pieces(ring.truth, nodes(0, 12, kAll), nodes(46, 58, kAll));
+  EXPECT_EQ(pieces.between(ring.evidence, {100.0, 0.0, 0.0}), 0.0);
+  EXPECT_EQ(ring.evidence.between(ring.truth, {}, {1, 2}, {}), 0.0);
+  EXPECT_EQ(ring.evidence.between(ring.truth, {3}, {4}, {}), 0.0) << "neighbours tell nothing new";
+}
+
 }  // namespace
 }  // namespace shapemap

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "graph/loop_choice.hpp"
+
+#include <gmock/gmock.h>
+
+#include "support/matchers.hpp"
+#include "support/ring_walk.hpp"
+
+namespace shapemap {
+namespace {
+
+using test::HasSameBits;
+using test::kRingLap;
+using ::testing::Each;
+using ::testing::ElementsAre;
+
+/// Once round the ring and a bit more, with a loop where it meets itself and one that is wrong.
+struct Ring {
+  explicit Ring(double drift_rad = 0.0) : links(test::drifting_links(truth, drift_rad)) {}
+
+  LoopProblem problem() { return {views, links, clusters, {}, options, 1}; }
+
+  void spoil(std::size_t link, bool keep_right) {
+    std::vector<ChainLink::Alternative>& alternatives = links[link].alternatives;
+    const ChainLink::Alternative right = alternatives[0];
+    alternatives[0].a_from_b = right.a_from_b * Pose2{0.3, -0.5, 70 * kDegree};
+    alternatives[0].score = 1.0;
+    if (keep_right) alternatives.push_back(right);
+    links[link].probability = 0.4;
+  }
+
+  std::vector<Pose2> truth = test::ring_walk(kRingLap + 8, 2);
+  test::Views views = test::views_along(test::ring_world(1), truth);
+  std::vector<ChainLink> links;
+  std::vector<LoopCluster> clusters{test::cluster_of(truth, 3, 28, 5, 18.0, {2.0, 0.0, 0.0}),
+                                    test::cluster_of(truth, 0, kRingLap, 8, 12.0)};
+  LoopClosingOptions options;
+};
+
+TEST(LoopChoiceOfMap, TakesTheAlternativesAndLoopsThatAgreeWithTheMap) {
+  Ring ring;
+  ring.spoil(20, true);
+  const LoopChoice choice = ring.problem().of_map(ring.truth);
+  for (std::size_t i = 0; i < ring.links.size(); ++i) EXPECT_EQ(choice.link_choice[i], i == 20 ? 1 : 0) << i;
+  EXPECT_THAT(choice.accepted, ElementsAre(0, 1));
+  EXPECT_LT(test::worst_off_m(choice.map_from_node, ring.truth), 0.2);
+  EXPECT_GT(choice.value, ring.problem().chain_alone().value + 20.0);
+}
+
+TEST(LoopChoiceOfMap, CutsALinkThatDisagreesWhereALoopHoldsTheRest) {
+  Ring ring;
+  ring.spoil(20, false);
+  const LoopChoice choice = ring.problem().of_map(ring.truth);
+  EXPECT_THAT(choice.accepted, ElementsAre(0, 1));
+  for (std::size_t i = 0; i < ring.links.size(); ++i) EXPECT_EQ(choice.link_choice[i], i == 20 ? kCut : 0) << i;
+  EXPECT_LT(test::worst_off_m(choice.map_from_node, ring.truth), 0.2);
+}
+
+TEST(LoopChoiceOfMap, LeavesWithTheChainWhatNothingElseJoins) {
+  Ring ring;
+  ring.clusters.clear();
+  ring.spoil(20, false);
+  ring.spoil(30, false);
+  const LoopChoice choice = ring.problem().of_map(ring.truth);
+  EXPECT_THAT(choice.link_choice, Each(0));
+  const std::vector<Pose2> chain = test::chained(ring.links, ring.truth[0]);
+  for (std::size_t n = 0; n < chain.size(); ++n) {
+    EXPECT_THAT(choice.map_from_node[n], test::IsNearPose(chain[n], 1e-4, 1e-4)) << n;
+  }
+}
+
+TEST(LoopChoiceOfMap, OfAnotherLogIsNotJoined) {
+  Ring ring;
+  ring.links[20] = {};
+  LoopProblem problem = ring.problem();
+  const LoopChoice chain = problem.chain_alone();
+  const LoopChoice choice = problem.of_map(chain.map_from_node);
+  EXPECT_EQ(choice.link_choice, chain.link_choice);
+  EXPECT_EQ(choice.link_choice[20], kCut);
+  EXPECT_THAT(choice.accepted, Each(0));
+}
+
+/// Without loops that agree, the chain is what it was.
+TEST(LoopChoiceOfMap, OfTheChainIsTheChain) {
+  Ring ring(1.0 * kDegree);
+  LoopProblem problem = ring.problem();
+  const LoopChoice chain = problem.chain_alone();
+  const LoopChoice choice = problem.of_map(chain.map_from_node);
+  EXPECT_EQ(choice.link_choice, chain.link_choice);
+  EXPECT_EQ(choice.accepted, chain.accepted);
+  EXPECT_NEAR(choice.value, chain.value, 1e-6);
+  for (std::size_t n = 0; n < chain.map_from_node.size(); ++n) {
+    EXPECT_THAT(choice.map_from_node[n], test::IsNearPose(chain.map_from_node[n], 1e-9, 1e-9));
+  }
+}
+
+}  // namespace
+}  // namespace shapemap
