@@ -49,11 +49,9 @@ class LoopCloser {
     LoopChoice best = assembled(hypotheses, chain.map_from_node);
     close(best);
     close(chain);
-    const bool chain_is_hopeless = chain.value < best.value - kHopelessLoop;
+    if (chain.value > best.value) best = std::move(chain);
     repair(best);
-    if (chain_is_hopeless) return best;
-    repair(chain);
-    return chain.value > best.value ? chain : best;
+    return best;
   }
 
  private:
