@@ -17,7 +17,7 @@ constexpr double kContradicts_rad = 10 * kDegree;
 constexpr double kStrong = 10.0;
 constexpr double kVeryDoubtful = 0.65;
 /// No more maps are assembled when so many in a row are not better by this share.
-constexpr int kAssembliesInVain = 4;
+constexpr int kAssembliesInVain = 3;
 constexpr double kLeastGain = 0.01;
 
 constexpr int kRoundsOfClosing = 3;

@@ -35,7 +35,7 @@ constexpr double kRevisitPenalty = 10.0;
 constexpr double kPenaltyPerLogStep = 2.0;
 
 /// Ways that are looked into, of two pieces.
-constexpr std::size_t kWaysTried = 6;
+constexpr std::size_t kWaysTried = 4;
 
 /// What a way gains or loses by chance, at most.
 constexpr double kNoise = 4.0;

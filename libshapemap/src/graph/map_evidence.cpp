@@ -15,7 +15,7 @@ constexpr std::size_t kLeastApart = 2;   // along the chain
 constexpr std::size_t kSameStretch = 8;  // all pairs of nodes this near along the chain are asked, else one in four
 constexpr std::size_t kStride = 3;
 constexpr double kSlack = 2.0;
-constexpr std::size_t kPairsBetween = 150;  // of two pieces, about so many tell enough
+constexpr std::size_t kPairsBetween = 60;  // of two pieces, about so many tell enough
 
 /// Less changes nothing that matters.
 bool moved(const Pose2& a, const Pose2& b) {
