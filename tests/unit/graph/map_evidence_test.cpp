@@ -195,7 +195,7 @@ TEST(MapEvidenceBetween, IsWhatAWholeMapGainsByThePairsOfBothPieces) {
   const auto odd_threes = [](std::size_t n) { return n / 3 % 2 == 1; };
   const std::vector<TwoPieces> cases{{ring.truth, nodes(0, 12, kAll), nodes(46, 58, kAll)},
                                      {ring.truth, nodes(46, 58, kAll), nodes(0, 12, kAll)},
-                                     {ring.truth, nodes(0, 30, even_threes), nodes(0, 30, odd_threes)},
+                                     {ring.truth, nodes(0, 12, even_threes), nodes(0, 12, odd_threes)},
                                      {ring.truth, nodes(20, 21, kAll), nodes(22, 40, kAll)}};
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const double right = cases[k].by_whole_maps(ring.views);
