@@ -10,16 +10,16 @@
 namespace shapemap {
 namespace {
 
-/// And one that is farther off contradicts it.
+/// A map that is farther than this off what a loop says contradicts it.
 constexpr double kContradicts_m = 1.0;
 constexpr double kContradicts_rad = 10 * kDegree;
 
 constexpr double kStrong = 10.0;
 constexpr double kVeryDoubtful = 0.65;
+
 /// No more maps are assembled when so many in a row are not better by this share.
 constexpr int kAssembliesInVain = 3;
 constexpr double kLeastGain = 0.01;
-
 constexpr int kRoundsOfClosing = 3;
 constexpr int kRoundsOfRepair = 4;
 constexpr std::size_t kDoubtfulPerLoop = 4;

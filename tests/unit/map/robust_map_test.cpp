@@ -9,6 +9,7 @@
 
 #include "shapemap/map/map_log.hpp"
 #include "support/matchers.hpp"
+#include "support/patience.hpp"
 #include "support/ring_walk.hpp"
 
 namespace shapemap {
@@ -188,35 +189,23 @@ TEST(RobustMap, IsTheSameToTheBitForAnyNumberOfThreads) {
   expect_same_bits(mapped(two.log, options), one);
 }
 
-/// Says yes `times` times.
-struct Patience : RunObserver {
-  explicit Patience(std::size_t times) : left(times) {}
-  bool keep_going() override {
-    ++asked;
-    if (left > 0) --left;
-    return left > 0;
-  }
-  std::size_t left;
-  std::size_t asked = 0;
-};
-
 TEST(RobustMap, StoppedAtAnyTimeIsWhole) {
   const TwoLogs two(test::ring_world(1));
   MappingOptions options = quick();
   options.loop_search.likely_places = 2;
-  Patience patient(100000);
+  test::Patience patient(100000);
   const MapResult whole = map_log(two.log, options, patient);
   EXPECT_FALSE(whole.interrupted);
   const std::size_t all = patient.asked;
   std::set<std::size_t> times{0, 1, 2, 3, 4, 5, all / 2, all - 1, all};
   for (const std::size_t n : times) {
     SCOPED_TRACE("of " + std::to_string(all) + " questions: " + std::to_string(n));
-    Patience observer(n);
+    test::Patience observer(n);
     const MapResult result = map_log(two.log, options, observer);
     EXPECT_TRUE(result.interrupted);
     expect_whole(result, two.log);
   }
-  Patience just_enough(all + 1);
+  test::Patience just_enough(all + 1);
   const MapResult result = map_log(two.log, options, just_enough);
   EXPECT_FALSE(result.interrupted);
   expect_same_bits(result, whole);
