@@ -23,6 +23,7 @@ BASELINES = ("mrpt-icp", "mrpt-rbpf", "vasco")
 COVARIANCES = "covariances"
 WITH_COVARIANCES = ("mrpt-rbpf", "vasco")  # they have a motion model
 CEILING = "ceiling"
+FEEDS = ("out.tum", "motions.txt")  # what the baselines are fed with, in the folder of the method that feeds them
 ALL = (
     *(*OURS, CEILING, "mrpt-icp", "mrpt-icp+robust", "mrpt-rbpf", "mrpt-rbpf+robust", f"mrpt-rbpf+{COVARIANCES}"),
     *("vasco", "vasco+robust"),
@@ -98,12 +99,12 @@ def baseline_command(programs: Programs, method: Method, log: Path, folder: Path
     command: list[object] = [programs.baselines, method.base, log, "--trajectory", folder / "out.tum"]
     command += ["--map", folder / "map.png", "--seed", programs.seed]
     if feed is not None:
-        poses = feed / "out.tum"
+        poses = feed / FEEDS[0]
         if not poses.exists():
             raise Failure(f"{method.feed} gave no poses to start from")
         command += ["--poses", poses]
     if feed is not None and method.needs_covariances:
-        motions = feed / "motions.txt"
+        motions = feed / FEEDS[1]
         if not motions.exists():
             raise Failure(f"no covariances: {programs.cli.name} has no option --motions")
         command += ["--covariances", motions]

@@ -17,7 +17,7 @@ from . import metrics
 from .ceiling import ceiling_relation_errors, ceiling_trajectory
 from .logs import EvaluationLog
 from .map_agreement import map_agreement
-from .methods import CEILING, Method, Programs, baseline_command, our_command
+from .methods import CEILING, FEEDS, Method, Programs, baseline_command, our_command
 from .programs import Failure, Usage, run_measured
 from .relations import relation_errors, summary
 from .trajectories import Fragment, as_lists, read_trajectory
@@ -46,13 +46,16 @@ class Job:
         return self.folder.parent / self.method.feed if self.method.feed else None
 
     def key(self) -> str:
-        """Changes with all that the result depends on: --resume does again what has another key."""
+        """Changes with all that the result depends on: --resume does again what has another key. Of the method that
+        feeds this one that is what it wrote, not how."""
         programs = self.programs
-        used = (
-            [programs.cli] if self.method.is_ours or self.method.name == CEILING else [programs.cli, programs.baselines]
-        )
+        is_cli = self.method.is_ours or self.method.name == CEILING
+        used = [programs.cli] if is_cli else [programs.baselines]
+        if self.feed:
+            used += [self.feed / name for name in FEEDS[: 1 + self.method.needs_covariances]]
+        arguments = programs.arguments if is_cli else (*programs.baseline_arguments, programs.seed)
         parts = [self.log.sha256, self.method.name, [file_sha256(path) for path in used], self.timeout_s]
-        parts += [programs.arguments, programs.baseline_arguments, programs.seed, self.log.spec.keeps_heading]
+        parts += [arguments, self.log.spec.keeps_heading]
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
 
