@@ -18,8 +18,8 @@ class ConsoleObserver : public RunObserver {
   void on_progress(std::size_t done, std::size_t total) override { progress_.update(done, total); }
   void on_warning(std::string_view message) override { warnings_.emplace_back(message); }
   void on_stage(std::string_view stage) override {
-    if (interrupted()) return;  // it will not be done
-    progress_.start(std::string(stage), stage == "chain" ? "positions" : "pairs");
+    const std::string asked_to_stop = interrupted() ? "interrupted; still: " : "";
+    progress_.start(asked_to_stop + std::string(stage), stage == "chain" ? "positions" : "pairs");
   }
   bool keep_going() override {
     progress_.tick();

@@ -65,10 +65,9 @@ std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, co
   return found;
 }
 
-std::vector<LoopHypothesis> all_aligned(const NodeViews& views, const std::vector<Pair>& pairs,
-                                        const PairSearch& search, int threads, RunObserver& observer,
-                                        AlignmentStore* store) {
-  std::vector<LoopHypothesis> all;
+/// Adds to `all`. Throws Interrupted when the observer asks to stop.
+void align_all(const NodeViews& views, const std::vector<Pair>& pairs, const PairSearch& search, int threads,
+               RunObserver& observer, AlignmentStore* store, std::vector<LoopHypothesis>& all) {
   for (std::size_t first = 0; first < pairs.size(); first += kBlock) {
     if (!observer.keep_going()) throw Interrupted();
     const std::size_t count = std::min(kBlock, pairs.size() - first);
@@ -77,14 +76,13 @@ std::vector<LoopHypothesis> all_aligned(const NodeViews& views, const std::vecto
     for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
     observer.on_progress(first + count, pairs.size());
   }
-  return all;
 }
 
 }  // namespace
 
-std::vector<LoopHypothesis> likely_loops(const NodeViews& views, const HypothesisSearchOptions& search,
-                                         const LoopSearchOptions& options, int threads, RunObserver& observer,
-                                         AlignmentStore* store) {
+std::vector<LoopHypothesis> likely_loops(const NodeViews& views, std::size_t first,
+                                         const HypothesisSearchOptions& search, const LoopSearchOptions& options,
+                                         int threads, RunObserver& observer, AlignmentStore* store) {
   std::vector<PlaceSignature> signatures(views.size());
   parallel_for(views.size(), threads, [&](std::size_t i) { signatures[i] = place_signature(*views[i]); });
   PlaceIndex index;
@@ -94,7 +92,7 @@ std::vector<LoopHypothesis> likely_loops(const NodeViews& views, const Hypothesi
   const auto count = static_cast<std::size_t>(options.likely_places);
   std::vector<std::vector<LikelyPlace>> places(views.size());
   parallel_for(views.size(), threads, [&](std::size_t b) {
-    if (b >= shortest) places[b] = index.most_alike(b, b - shortest + 1, count);
+    if (b >= std::max(first, shortest)) places[b] = index.most_alike(b, b - shortest + 1, count);
   });
   std::vector<Pair> pairs;
   for (std::size_t b = 0; b < views.size(); ++b) {
@@ -102,7 +100,12 @@ std::vector<LoopHypothesis> likely_loops(const NodeViews& views, const Hypothesi
   }
   const PairSearch quickly{quick(without_all_rotations(search)), SearchKind::kLoop, kPosesPerPair,
                            options.least_probability};
-  return all_aligned(views, pairs, quickly, threads, observer, store);
+  std::vector<LoopHypothesis> found;
+  try {
+    align_all(views, pairs, quickly, threads, observer, store, found);
+  } catch (const Interrupted&) {  // those that were found are of use
+  }
+  return found;
 }
 
 std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<std::size_t>& links,
@@ -115,7 +118,9 @@ std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<st
     }
   }
   const PairSearch thoroughly{without_all_rotations(search), SearchKind::kBorrowed, kBridgePoses, 0.0};
-  return all_aligned(views, pairs, thoroughly, threads, observer, store);
+  std::vector<LoopHypothesis> found;
+  align_all(views, pairs, thoroughly, threads, observer, store, found);
+  return found;
 }
 
 }  // namespace shapemap

@@ -45,10 +45,10 @@ std::vector<Neighbour> neighbours(const std::vector<Pose2>& poses, const Refinem
 
 }  // namespace
 
-std::vector<Pose2> refine_map(const std::vector<std::shared_ptr<const ScanView>>& views,
-                              std::vector<Pose2> map_from_node, const std::vector<PoseConstraint>& chain,
-                              const HypothesisSearchOptions& search, const RefinementOptions& options, int threads,
-                              RunObserver& observer) {
+RefinedMap refine_map(const std::vector<std::shared_ptr<const ScanView>>& views, std::vector<Pose2> map_from_node,
+                      const std::vector<PoseConstraint>& chain, const HypothesisSearchOptions& search,
+                      const RefinementOptions& options, int threads, RunObserver& observer) {
+  RefinedMap map;
   for (int round = 0; round < options.rounds && observer.keep_going(); ++round) {
     const std::vector<Neighbour> pairs = neighbours(map_from_node, options);
     std::vector<std::optional<PoseConstraint>> found(pairs.size());
@@ -64,14 +64,17 @@ std::vector<Pose2> refine_map(const std::vector<std::shared_ptr<const ScanView>>
       }
       found[i] = PoseConstraint{a, b, pose.ref_from_query, pose_covariance(pose.fit), kLossScale};
     });
+    map.neighbours.clear();
+    for (const auto& constraint : found) {
+      if (constraint) map.neighbours.push_back(*constraint);
+    }
     std::vector<PoseConstraint> constraints = chain;
     for (PoseConstraint& link : constraints) link.loss_scale = kLossScale;
-    for (const auto& constraint : found) {
-      if (constraint) constraints.push_back(*constraint);
-    }
+    constraints.insert(constraints.end(), map.neighbours.begin(), map.neighbours.end());
     map_from_node = solve_pose_graph(map_from_node, constraints, 30).map_from_node;
   }
-  return map_from_node;
+  map.map_from_node = std::move(map_from_node);
+  return map;
 }
 
 }  // namespace shapemap

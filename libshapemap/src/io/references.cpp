@@ -7,7 +7,7 @@ std::vector<std::size_t> references_of(const MapResult& result) {
   std::vector<std::size_t> references;
   std::size_t keyframe = kNoReference;
   for (const PositionResult& position : result.positions) {
-    references.push_back(keyframe);
+    references.push_back(position.reference == kNoReference ? keyframe : position.reference);
     if (position.fragment >= 0 && position.is_keyframe) keyframe = position.position_index;
   }
   return references;

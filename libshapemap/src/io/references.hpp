@@ -8,9 +8,7 @@
 
 namespace shapemap {
 
-inline constexpr std::size_t kNoReference = static_cast<std::size_t>(-1);
-
-/// For each position: that which its alignment is to, the keyframe before it.
+/// For each position: that which its alignment is to.
 std::vector<std::size_t> references_of(const MapResult& result);
 
 }  // namespace shapemap

@@ -7,13 +7,9 @@
 #include <vector>
 
 #include "chain_smoothing.hpp"
-#include "shapemap/align/alignment_store.hpp"
 #include "shapemap/align/pose_hypothesis.hpp"
-#include "shapemap/core/observer.hpp"
-#include "shapemap/map/mapping_options.hpp"
-#include "shapemap/map/trace_sink.hpp"
-#include "shapemap/map/trajectory.hpp"
-#include "shapemap/scan/scan.hpp"
+#include "shapemap/align/robust_align.hpp"
+#include "shapemap/graph/pose_graph.hpp"
 
 namespace shapemap {
 
@@ -34,19 +30,30 @@ struct AttachedScan {
 /// What a keyframe may be to the one before it, and which of it the scans around choose.
 struct KeyframeLink {
   std::vector<PoseHypothesis> hypotheses;  ///< none: another log starts here, or nothing fits
+  std::vector<std::vector<double>> bonus;  ///< [hypothesis][that of the next link]: how well the two go together
   Choice choice;
   std::size_t num_of_chain = 0;  ///< where the link was revised: the hypotheses before that, which come first
+  /// Keyframes between the two were retired, see retire_keyframes(): there is one hypothesis, which is that of the map
+  /// and certain, and this is its covariance.
+  std::optional<Eigen::Matrix3d> settled_covariance;
 };
 
 struct KeyframeChain {
   std::vector<Keyframe> keyframes;
-  std::vector<AttachedScan> attached;  ///< in the order of the log
-  std::vector<KeyframeLink> links;     ///< links[i] joins keyframe i to keyframe i + 1
+  std::vector<AttachedScan> attached;
+  std::vector<KeyframeLink> links;  ///< links[i] joins keyframe i to keyframe i + 1
 };
 
-/// Each scan against the keyframe before it, with several hypotheses, of which the scans further back decide. Adds an
-/// entry for each position to `result`, without a place. Stops early, with what is whole, when the observer asks to.
-KeyframeChain chain_keyframes(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
-                              AlignmentStore* store, MapResult& result);
+/// What hypothesis number `k` of a link says.
+PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std::size_t k);
+
+/// Of the hypothesis that the chain chose.
+double link_probability(const KeyframeLink& link, const ConfidenceOptions& options);
+
+/// KeyframeLink::bonus of links that may be anything to each other.
+std::vector<std::vector<double>> no_bonus(const KeyframeLink& link, const KeyframeLink& next);
+
+/// Each link takes the hypothesis that goes together best with the links before and after it.
+void choose_hypotheses(KeyframeChain& chain);
 
 }  // namespace shapemap

@@ -3,12 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
-#include "shapemap/align/robust_align.hpp"
-#include "shapemap/core/errors.hpp"
+#include "loop_knowledge.hpp"
 #include "shapemap/graph/loop_closing.hpp"
-#include "shapemap/graph/loop_hypotheses.hpp"
 #include "shapemap/graph/map_refinement.hpp"
 
 namespace shapemap {
@@ -21,32 +18,11 @@ constexpr double kTrusted = 0.5;
 constexpr std::size_t kMembersKept = 3;
 constexpr double kLoopLoss = 2.0;
 
-double probability(const KeyframeLink& link, const ConfidenceOptions& options) {
-  return judged(link.hypotheses, link.choice.alternative, link.choice.margin, options).probability;
-}
-
-/// Index of hypothesis number `rank` of a link, when that which the chain chose comes first.
-std::size_t ranked_hypothesis(const KeyframeLink& link, std::size_t rank) {
-  if (rank == 0) return link.choice.alternative;
-  return rank <= link.choice.alternative ? rank - 1 : rank;
-}
-
-ChainLink chain_link(const KeyframeLink& link, const ConfidenceOptions& options) {
-  ChainLink result;
-  for (std::size_t rank = 0; rank < link.hypotheses.size(); ++rank) {
-    const PoseHypothesis& pose = link.hypotheses[ranked_hypothesis(link, rank)];
-    result.alternatives.push_back({pose.ref_from_query, pose_covariance(pose.fit), pose.score});
-  }
-  if (result.exists()) result.probability = probability(link, options);
-  return result;
-}
-
 std::vector<PoseConstraint> link_constraints(const KeyframeChain& chain, const std::vector<int>& link_choice) {
   std::vector<PoseConstraint> constraints;
   for (std::size_t i = 0; i < chain.links.size(); ++i) {
     if (link_choice[i] == kCut) continue;
-    const PoseHypothesis& pose = chain.links[i].hypotheses[static_cast<std::size_t>(link_choice[i])];
-    constraints.push_back({i, i + 1, pose.ref_from_query, pose_covariance(pose.fit), 0.0});
+    constraints.push_back(link_constraint(chain, i, static_cast<std::size_t>(link_choice[i])));
   }
   return constraints;
 }
@@ -64,7 +40,7 @@ void find_parts(const KeyframeChain& chain, const std::vector<PoseConstraint>& l
     if (map.link_choice[i] == kCut) continue;
     const bool alone = lone[next++];
     map.held_by_loops[i] = !alone;
-    if (alone && probability(chain.links[i], options.robust.confidence) < options.smoothing.split_below) {
+    if (alone && link_probability(chain.links[i], options.robust.confidence) < options.smoothing.split_below) {
       map.link_choice[i] = kCut;
     }
   }
@@ -74,45 +50,6 @@ void find_parts(const KeyframeChain& chain, const std::vector<PoseConstraint>& l
   for (std::size_t i = 0; i < chain.links.size(); ++i) {
     if (map.link_choice[i] == kCut) map.held_by_loops[i] = map.component[i] == map.component[i + 1];
   }
-}
-
-/// Knows the alignments of keyframes as those of their positions.
-class KeyframeStore : public AlignmentStore {
- public:
-  KeyframeStore(const KeyframeChain& chain, AlignmentStore& of_positions)
-      : chain_(chain), of_positions_(of_positions) {}
-
-  std::optional<std::vector<PoseHypothesis>> find(const AlignmentKey& key) override {
-    return of_positions_.find(of_position(key));
-  }
-  void keep(const AlignmentKey& key, const std::vector<PoseHypothesis>& hypotheses) override {
-    of_positions_.keep(of_position(key), hypotheses);
-  }
-
- private:
-  AlignmentKey of_position(const AlignmentKey& key) const {
-    return {chain_.keyframes[key.reference].position_index, chain_.keyframes[key.query].position_index, key.search};
-  }
-
-  const KeyframeChain& chain_;
-  AlignmentStore& of_positions_;
-};
-
-std::vector<LoopHypothesis> loop_hypotheses(const NodeViews& views, const std::vector<ChainLink>& links,
-                                            const MappingOptions& options, RunObserver& observer,
-                                            AlignmentStore* store) {
-  observer.on_stage("loops");
-  std::vector<LoopHypothesis> hypotheses =
-      likely_loops(views, options.robust.search, options.loop_search, options.chain.threads, observer, store);
-  std::vector<std::size_t> doubtful;
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    if (links[i].exists() && links[i].probability < options.loop_search.bridge_below) doubtful.push_back(i);
-  }
-  observer.on_stage("doubts");
-  const std::vector<LoopHypothesis> around =
-      bridges(views, doubtful, options.robust.search, options.chain.threads, observer, store);
-  hypotheses.insert(hypotheses.end(), around.begin(), around.end());
-  return hypotheses;
 }
 
 /// For each keyframe, the piece of the chain that it is in, by number.
@@ -166,19 +103,12 @@ KeyframeMap map_of_chain(const KeyframeChain& chain, const MappingOptions& optio
   return map;
 }
 
-KeyframeMap map_with_loops(const KeyframeChain& chain, const MappingOptions& options, RunObserver& observer,
-                           AlignmentStore* store) {
-  KeyframeMap map = map_of_chain(chain, options);
-  NodeViews views;
-  for (const Keyframe& keyframe : chain.keyframes) views.push_back(keyframe.view);
-  std::vector<ChainLink> links;
-  for (const KeyframeLink& link : chain.links) links.push_back(chain_link(link, options.robust.confidence));
-
-  std::optional<KeyframeStore> of_keyframes;
-  if (store) of_keyframes.emplace(chain, *store);
-  const std::vector<LoopHypothesis> hypotheses =
-      loop_hypotheses(views, links, options, observer, of_keyframes ? &*of_keyframes : nullptr);
+KeyframeMap map_with_loops(const KeyframeChain& chain, const std::vector<LoopHypothesis>& hypotheses,
+                           const MappingOptions& options, RunObserver& observer) {
   observer.on_stage("whole map");
+  KeyframeMap map = map_of_chain(chain, options);
+  const NodeViews views = views_of(chain);
+  const std::vector<ChainLink> links = chain_links(chain, options.robust.confidence);
   const std::vector<LoopCluster> clusters = loop_clusters(hypotheses, map.map_from_keyframe, trusted_pieces(links), {});
   const VisibilityOptions& visibility = options.robust.search.visibility;
   const LoopSolution solution = close_loops(views, links, hypotheses, clusters, visibility, options.loop_closing,
@@ -190,10 +120,12 @@ KeyframeMap map_with_loops(const KeyframeChain& chain, const MappingOptions& opt
   }
   const std::vector<PoseConstraint> loops = loop_constraints(clusters, solution.accepted);
   find_parts(chain, loops, options, map);
-  std::vector<PoseConstraint> known = link_constraints(chain, map.link_choice);
-  known.insert(known.end(), loops.begin(), loops.end());
-  map.map_from_keyframe = refine_map(views, solution.map_from_node, known, options.robust.search, options.refinement,
-                                     options.chain.threads, observer);
+  map.constraints = link_constraints(chain, map.link_choice);
+  map.constraints.insert(map.constraints.end(), loops.begin(), loops.end());
+  RefinedMap refined = refine_map(views, solution.map_from_node, map.constraints, options.robust.search,
+                                  options.refinement, options.chain.threads, observer);
+  map.map_from_keyframe = std::move(refined.map_from_node);
+  map.constraints.insert(map.constraints.end(), refined.neighbours.begin(), refined.neighbours.end());
   for (const std::size_t k : solution.accepted) {
     if (is_closed(clusters[k], map.map_from_keyframe)) map.loops.push_back(closed_loop(chain, clusters[k]));
   }

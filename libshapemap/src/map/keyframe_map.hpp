@@ -5,6 +5,9 @@
 #include <vector>
 
 #include "keyframe_chain.hpp"
+#include "shapemap/graph/loop_clusters.hpp"
+#include "shapemap/map/mapping_options.hpp"
+#include "shapemap/map/trajectory.hpp"
 
 namespace shapemap {
 
@@ -15,6 +18,8 @@ struct KeyframeMap {
   std::vector<bool> held_by_loops;     ///< per link: its two keyframes stay where they are without it
   std::vector<std::size_t> component;  ///< per keyframe: the first of those that it hangs together with
   std::vector<ClosedLoop> loops;       ///< of positions
+  /// Of keyframes, all that the map was solved with. None where it is only the chain.
+  std::vector<PoseConstraint> constraints;
 };
 
 /// The chain as it is: errors add up.
@@ -22,7 +27,7 @@ KeyframeMap map_of_chain(const KeyframeChain& chain, const MappingOptions& optio
 
 /// The chain with its loops closed, and all scans aligned to all that see the same. When the observer asks to stop,
 /// with the loops that are closed by then.
-KeyframeMap map_with_loops(const KeyframeChain& chain, const MappingOptions& options, RunObserver& observer,
-                           AlignmentStore* store);
+KeyframeMap map_with_loops(const KeyframeChain& chain, const std::vector<LoopHypothesis>& hypotheses,
+                           const MappingOptions& options, RunObserver& observer);
 
 }  // namespace shapemap

@@ -21,17 +21,17 @@ constexpr double kSure = 0.95;
 constexpr double kDense = 0.5;
 constexpr double kMemory = 0.97;
 
-bool fits(const PoseHypothesis& pose) {
-  const double total = std::max(pose.visibility.total(), 1e-9);
-  return pose.visibility.agree > kLeastAgree * total && pose.visibility.crossed < kMostCrossed * total &&
-         worst_deviation_m(pose_covariance(pose.fit)) < kMostDeviation_m;
-}
-
 bool is_small(const Pose2& step, double metres, double radians) {
   return step.translation().norm() < metres && std::abs(step.theta_rad) < radians;
 }
 
 }  // namespace
+
+bool can_stand_for(const PoseHypothesis& pose) {
+  const double total = std::max(pose.visibility.total(), 1e-9);
+  return pose.visibility.agree > kLeastAgree * total && pose.visibility.crossed < kMostCrossed * total &&
+         worst_deviation_m(pose_covariance(pose.fit)) < kMostDeviation_m;
+}
 
 void KeyframeTracker::start(std::shared_ptr<const ScanView> keyframe) {
   keyframe_ = std::move(keyframe);
@@ -64,7 +64,7 @@ std::optional<PoseHypothesis> KeyframeTracker::followed(const ScanView& view) co
     if (onward.score > best.score) best = std::move(onward);
   }
   const Pose2 step = inverse(last_) * best.ref_from_query;
-  if (!fits(best) || !is_small(step, kLongestStep_m, kLargestTurn_rad)) return std::nullopt;
+  if (!can_stand_for(best) || !is_small(step, kLongestStep_m, kLargestTurn_rad)) return std::nullopt;
   return best;
 }
 

@@ -9,6 +9,9 @@
 
 namespace shapemap {
 
+/// Whether two scans at a pose show the same so well that one can stand for the other.
+bool can_stand_for(const PoseHypothesis& pose);
+
 /// Follows a sensor that moves little from scan to scan, as in recordings at full rate, and says which of the scans a
 /// keyframe can stand for. Any doubt makes a keyframe: those are aligned without a guess.
 class KeyframeTracker {

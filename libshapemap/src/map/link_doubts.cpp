@@ -21,10 +21,6 @@ constexpr int kMoreEffort = 4;
 /// Of a closed loop.
 const Eigen::Matrix3d kLoopCovariance = Eigen::Vector3d(0.01, 0.01, 0.0012).asDiagonal();
 
-double probability(const KeyframeLink& link, const ConfidenceOptions& options) {
-  return judged(link.hypotheses, link.choice.alternative, link.choice.margin, options).probability;
-}
-
 /// What a position does not see tells of no wall that is looked through: of scans that look one way, those of two
 /// different corridors go together well enough. Only positions that look all round are judged.
 bool looks_all_round(const ScanView& view) {
@@ -87,7 +83,7 @@ class LinkDoubts {
   void find() {
     for (std::size_t i = 0; i < chain_.links.size(); ++i) {
       if (map_.link_choice[i] == kCut || map_.held_by_loops[i]) continue;
-      if (probability(chain_.links[i], options_.robust.confidence) >= options_.link_revision.doubt_below) continue;
+      if (link_probability(chain_.links[i], options_.robust.confidence) >= options_.link_revision.doubt_below) continue;
       if (!looks_all_round(*views_[i]) || !looks_all_round(*views_[i + 1])) continue;
       chain_.links[i].num_of_chain = chain_.links[i].hypotheses.size();
       doubts_.push_back({{i, {}}, {}});
@@ -125,7 +121,7 @@ class LinkDoubts {
     KeyframeLink& link = chain_.links[i];
     if (thoroughly) {
       search_again(i);
-    } else if (probability(link, options_.robust.confidence) < options_.loop_search.bridge_below) {
+    } else if (link_probability(link, options_.robust.confidence) < options_.loop_search.bridge_below) {
       add_bridges(i);
     }
     const auto taken = static_cast<std::size_t>(map_.link_choice[i]);
@@ -188,12 +184,12 @@ class LinkDoubts {
     std::vector<PoseConstraint> known;
     for (std::size_t i = 0; i < chain_.links.size(); ++i) {
       if (map_.link_choice[i] == kCut) continue;
-      const PoseHypothesis& pose = chain_.links[i].hypotheses[static_cast<std::size_t>(map_.link_choice[i])];
-      known.push_back({i, i + 1, pose.ref_from_query, pose_covariance(pose.fit), 0.0});
+      known.push_back(link_constraint(chain_, i, static_cast<std::size_t>(map_.link_choice[i])));
     }
     add_loops(known);
     map_.map_from_keyframe = refine_map(views_, map_.map_from_keyframe, known, options_.robust.search,
-                                        options_.refinement, options_.chain.threads, observer_);
+                                        options_.refinement, options_.chain.threads, observer_)
+                                 .map_from_node;
   }
 
   const MappingOptions& options_;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "robust_chain.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -7,8 +9,6 @@
 #include <memory>
 #include <numeric>
 
-#include "keyframe_chain.hpp"
-#include "keyframe_tracker.hpp"
 #include "shapemap/align/robust_align.hpp"
 #include "shapemap/core/parallel_for.hpp"
 
@@ -40,202 +40,173 @@ double surprise(const Pose2& off) {
   return std::min(kMost, 2.0 * far) + std::min(kMost, 2.0 * turned);
 }
 
-class RobustChain {
- public:
-  RobustChain(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
-              AlignmentStore* store, MapResult& result)
-      : log_(log),
-        options_(options),
-        observer_(observer),
-        sink_(sink),
-        store_(store),
-        result_(result),
-        tracker_(options) {}
-
-  KeyframeChain run() {
-    observer_.on_stage("chain");
-    for (std::size_t first = 0; first < log_.positions.size() && observer_.keep_going(); first += kBlock) {
-      const std::size_t last = std::min(first + kBlock, log_.positions.size());
-      const std::size_t first_new = chain_.keyframes.size();
-      view_positions(first, last);
-      link_keyframes(first_new);
-      observer_.on_progress(last, log_.positions.size());
-    }
-    const std::vector<Choice> choices = best_choices(choices_, kFullMargin);
-    for (std::size_t i = 0; i < chain_.links.size(); ++i) chain_.links[i].choice = choices[i];
-    return std::move(chain_);
-  }
-
- private:
-  /// parallel_for(); the seconds that `work` took, summed over the threads.
-  double timed_for(std::size_t count, const std::function<void(std::size_t)>& work) const {
-    std::vector<double> seconds(count, 0.0);
-    parallel_for(count, options_.chain.threads, [&](std::size_t i) {
-      const auto start = std::chrono::steady_clock::now();
-      work(i);
-      seconds[i] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    });
-    return std::accumulate(seconds.begin(), seconds.end(), 0.0);
-  }
-
-  /// Views of the positions [first, last), and an entry of the result for each.
-  void view_positions(std::size_t first, std::size_t last) {
-    std::vector<std::shared_ptr<const ScanView>> views(last - first);
-    result_.times.shape_s += timed_for(last - first, [&](std::size_t i) {
-      views[i] = std::make_shared<ScanView>(view_of(log_.positions[first + i], options_.returns, options_.polylines,
-                                                    options_.shape, options_.robust.view));
-    });
-    for (std::size_t i = first; i < last; ++i) {
-      const std::shared_ptr<const ScanView>& view = views[i - first];
-      if (sink_) sink_->on_shape(i, view->points);
-      PositionResult outcome;
-      outcome.position_index = i;
-      outcome.timestamp_s = log_.positions[i].timestamp_s;
-      if (view->size() >= static_cast<std::size_t>(options_.shape.min_points)) {
-        take(i, view);
-      } else {
-        outcome.alignment.status = AlignStatus::kNoShape;
-        outcome.reason = "only " + std::to_string(view->size()) + " shape points, " +
-                         std::to_string(options_.shape.min_points) + " are needed";
-      }
-      result_.positions.push_back(std::move(outcome));
-    }
-  }
-
-  /// A scan with shape is attached to the last keyframe, or becomes one.
-  void take(std::size_t position_index, const std::shared_ptr<const ScanView>& view) {
-    if (starts_log(chain_.keyframes.empty() ? 0 : last_seen_, position_index)) tracker_.start(nullptr);
-    last_seen_ = position_index;
-    const auto start = std::chrono::steady_clock::now();
-    const std::optional<PoseHypothesis> pose = tracker_.follow(*view);
-    result_.times.align_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (pose) {
-      chain_.attached.push_back({position_index, chain_.keyframes.size() - 1, *pose});
-      return;
-    }
-    chain_.keyframes.push_back({position_index, view, tracker_.expected()});
-    tracker_.start(view);
-  }
-
-  /// Whether another log starts after position `before`, up to `after`.
-  bool starts_log(std::size_t before, std::size_t after) const {
-    const auto next = std::upper_bound(log_.starts.begin(), log_.starts.end(), before);
-    return next != log_.starts.end() && *next <= after;
-  }
-
-  /// Links of the keyframes from `first_new` on, each to the one before it.
-  void link_keyframes(std::size_t first_new) {
-    const std::size_t first = std::max<std::size_t>(first_new, 1);
-    if (chain_.keyframes.size() <= first) return;
-    const std::size_t count = chain_.keyframes.size() - first;
-    chain_.links.resize(chain_.keyframes.size() - 1);
-    choices_.scores.resize(chain_.links.size());
-    choices_.bonus.resize(chain_.links.size());
-    result_.times.align_s += timed_for(count, [&](std::size_t i) {
-      const std::size_t link = first + i - 1;
-      if (starts_log(position_of(link), position_of(link + 1))) return;
-      hypotheses(link) = aligned(link, link + 1, SearchKind::kFull, options_.robust.search);
-    });
-    std::vector<std::vector<PoseHypothesis>> borrowed(count);
-    result_.times.align_s += timed_for(count, [&](std::size_t i) { borrowed[i] = borrow_hypotheses(first + i - 1); });
-    for (std::size_t i = 0; i < count; ++i) {
-      std::vector<PoseHypothesis>& link = hypotheses(first + i - 1);
-      const std::size_t num_own = link.size();
-      for (const PoseHypothesis& pose : borrowed[i]) add_if_new(pose, link);
-      if (chain_.keyframes[first + i].expected) expect(*chain_.keyframes[first + i].expected, first + i - 1);
-      if (sink_) sink_->on_link({position_of(first + i - 1), position_of(first + i), link, num_own});
-      for (const PoseHypothesis& pose : link) choices_.scores[first + i - 1].push_back(pose.score);
-      if (link.empty()) choices_.scores[first + i - 1].push_back(0.0);
-    }
-    result_.times.align_s += timed_for(count, [&](std::size_t i) {
-      if (first + i >= 2) choices_.bonus[first + i - 2] = companion_scores(first + i - 2);
-    });
-    if (options_.loops.close_loops) return;
-    const std::size_t needed = static_cast<std::size_t>(options_.smoothing.more_references) + 2;
-    for (std::size_t i = 0; i + needed < chain_.keyframes.size(); ++i) chain_.keyframes[i].view.reset();
-  }
-
-  /// Where scans follow each other closely, hypotheses far from where the next was to be expected are less likely.
-  void expect(const Pose2& ref_from_query, std::size_t link) {
-    std::vector<PoseHypothesis>& found = hypotheses(link);
-    add_if_new(
-        refined_hypothesis(view_of_keyframe(link), view_of_keyframe(link + 1), ref_from_query, options_.robust.search),
-        found);
-    for (PoseHypothesis& pose : found) pose.score -= surprise(inverse(ref_from_query) * pose.ref_from_query);
-    std::stable_sort(found.begin(), found.end(),
-                     [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.score > b.score; });
-  }
-
-  std::vector<PoseHypothesis>& hypotheses(std::size_t link) { return chain_.links[link].hypotheses; }
-  const std::vector<PoseHypothesis>& hypotheses(std::size_t link) const { return chain_.links[link].hypotheses; }
-  const ScanView& view_of_keyframe(std::size_t i) const { return *chain_.keyframes[i].view; }
-  std::size_t position_of(std::size_t keyframe) const { return chain_.keyframes[keyframe].position_index; }
-
-  std::vector<PoseHypothesis> aligned(std::size_t reference, std::size_t query, SearchKind search,
-                                      const HypothesisSearchOptions& options) const {
-    return pose_hypotheses(view_of_keyframe(reference), view_of_keyframe(query), options,
-                           {position_of(reference), position_of(query), search}, store_);
-  }
-
-  /// When a link is in doubt: what scans further back say about it, by way of the best links between.
-  std::vector<PoseHypothesis> borrow_hypotheses(std::size_t link) const {
-    std::vector<PoseHypothesis> borrowed;
-    if (starts_log(position_of(link), position_of(link + 1)) || !in_doubt(hypotheses(link))) return borrowed;
-    HypothesisSearchOptions quick = options_.robust.search;
-    quick.hypotheses.all_rotations_below = -std::numeric_limits<double>::infinity();
-    const ScanView& reference = view_of_keyframe(link);
-    const ScanView& query = view_of_keyframe(link + 1);
-    const double limit_m = max_shift_m(reference, query, options_.robust.search.voting);
-    Pose2 far_from_reference;
-    for (std::size_t back = 1; back <= static_cast<std::size_t>(options_.smoothing.more_references); ++back) {
-      if (link < back || hypotheses(link - back).empty()) break;
-      far_from_reference = hypotheses(link - back).front().ref_from_query * far_from_reference;
-      const std::vector<PoseHypothesis> seen_from_far = aligned(link - back, link + 1, SearchKind::kBorrowed, quick);
-      for (std::size_t k = 0; k < std::min(kBorrowed, seen_from_far.size()); ++k) {
-        const Pose2 ref_from_query = inverse(far_from_reference) * seen_from_far[k].ref_from_query;
-        if (ref_from_query.translation().lpNorm<Eigen::Infinity>() > limit_m) continue;
-        borrowed.push_back(refined_hypothesis(reference, query, ref_from_query, options_.robust.search));
-      }
-    }
-    return borrowed;
-  }
-
-  bool in_doubt(const std::vector<PoseHypothesis>& link) const {
-    return link.empty() || match_probability(link.front(), lead_of_first(link)) < options_.smoothing.doubt_below;
-  }
-
-  /// For each pair of alternatives of a link and the next: how the far scan then goes with the near one.
-  std::vector<std::vector<double>> companion_scores(std::size_t link) const {
-    std::vector<std::vector<double>> scores(choices_.scores[link].size(),
-                                            std::vector<double>(choices_.scores[link + 1].size(), 0.0));
-    for (std::size_t a = 0; a < hypotheses(link).size(); ++a) {
-      for (std::size_t b = 0; b < hypotheses(link + 1).size(); ++b) {
-        const Pose2 near_from_far = hypotheses(link)[a].ref_from_query * hypotheses(link + 1)[b].ref_from_query;
-        scores[a][b] = options_.smoothing.companion_weight *
-                       companion_score(visibility(view_of_keyframe(link), view_of_keyframe(link + 2), near_from_far,
-                                                  options_.robust.search.visibility, kCompanionSlack));
-      }
-    }
-    return scores;
-  }
-
-  const Log& log_;
-  const MappingOptions& options_;
-  RunObserver& observer_;
-  TraceSink* sink_;
-  AlignmentStore* store_;
-  MapResult& result_;
-  KeyframeTracker tracker_;
-  std::size_t last_seen_ = 0;  ///< the last position with shape
-  KeyframeChain chain_;
-  ChoiceChain choices_;
-};
-
 }  // namespace
 
-KeyframeChain chain_keyframes(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
-                              AlignmentStore* store, MapResult& result) {
-  return RobustChain(log, options, observer, sink, store, result).run();
+RobustChain::RobustChain(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
+                         AlignmentStore* store, MapResult& result)
+    : log_(log),
+      options_(options),
+      observer_(observer),
+      sink_(sink),
+      store_(store),
+      result_(result),
+      tracker_(options) {}
+
+bool RobustChain::extend(std::size_t most_keyframes) {
+  observer_.on_stage("chain");
+  const auto is_whole = [&] { return next_ == log_.positions.size() || !observer_.keep_going(); };
+  while (!is_whole() && chain_.keyframes.size() < most_keyframes) {
+    const std::size_t last = std::min(next_ + kBlock, log_.positions.size());
+    const std::size_t first_new = chain_.keyframes.size();
+    view_positions(next_, last);
+    link_keyframes(first_new);
+    next_ = last;
+    observer_.on_progress(next_, log_.positions.size());
+  }
+  choose_hypotheses(chain_);
+  return !is_whole();
+}
+
+/// parallel_for(); the seconds that `work` took, summed over the threads.
+double RobustChain::timed_for(std::size_t count, const std::function<void(std::size_t)>& work) const {
+  std::vector<double> seconds(count, 0.0);
+  parallel_for(count, options_.chain.threads, [&](std::size_t i) {
+    const auto start = std::chrono::steady_clock::now();
+    work(i);
+    seconds[i] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  });
+  return std::accumulate(seconds.begin(), seconds.end(), 0.0);
+}
+
+/// Views of the positions [first, last), and an entry of the result for each.
+void RobustChain::view_positions(std::size_t first, std::size_t last) {
+  std::vector<std::shared_ptr<const ScanView>> views(last - first);
+  result_.times.shape_s += timed_for(last - first, [&](std::size_t i) {
+    views[i] = std::make_shared<ScanView>(
+        view_of(log_.positions[first + i], options_.returns, options_.polylines, options_.shape, options_.robust.view));
+  });
+  for (std::size_t i = first; i < last; ++i) {
+    const std::shared_ptr<const ScanView>& view = views[i - first];
+    if (sink_) sink_->on_shape(i, view->points);
+    PositionResult outcome;
+    outcome.position_index = i;
+    outcome.timestamp_s = log_.positions[i].timestamp_s;
+    if (view->size() >= static_cast<std::size_t>(options_.shape.min_points)) {
+      take(i, view);
+    } else {
+      outcome.alignment.status = AlignStatus::kNoShape;
+      outcome.reason = "only " + std::to_string(view->size()) + " shape points, " +
+                       std::to_string(options_.shape.min_points) + " are needed";
+    }
+    result_.positions.push_back(std::move(outcome));
+  }
+}
+
+/// A scan with shape is attached to the last keyframe, or becomes one.
+void RobustChain::take(std::size_t position_index, const std::shared_ptr<const ScanView>& view) {
+  if (starts_log(chain_.keyframes.empty() ? 0 : last_seen_, position_index)) tracker_.start(nullptr);
+  last_seen_ = position_index;
+  const auto start = std::chrono::steady_clock::now();
+  const std::optional<PoseHypothesis> pose = tracker_.follow(*view);
+  result_.times.align_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (pose) {
+    chain_.attached.push_back({position_index, chain_.keyframes.size() - 1, *pose});
+    return;
+  }
+  chain_.keyframes.push_back({position_index, view, tracker_.expected()});
+  tracker_.start(view);
+}
+
+/// Whether another log starts after position `before`, up to `after`.
+bool RobustChain::starts_log(std::size_t before, std::size_t after) const {
+  const auto next = std::upper_bound(log_.starts.begin(), log_.starts.end(), before);
+  return next != log_.starts.end() && *next <= after;
+}
+
+/// Links of the keyframes from `first_new` on, each to the one before it.
+void RobustChain::link_keyframes(std::size_t first_new) {
+  const std::size_t first = std::max<std::size_t>(first_new, 1);
+  if (chain_.keyframes.size() <= first) return;
+  const std::size_t count = chain_.keyframes.size() - first;
+  chain_.links.resize(chain_.keyframes.size() - 1);
+  result_.times.align_s += timed_for(count, [&](std::size_t i) {
+    const std::size_t link = first + i - 1;
+    if (starts_log(position_of(link), position_of(link + 1))) return;
+    hypotheses(link) = aligned(link, link + 1, SearchKind::kFull, options_.robust.search);
+  });
+  std::vector<std::vector<PoseHypothesis>> borrowed(count);
+  result_.times.align_s += timed_for(count, [&](std::size_t i) { borrowed[i] = borrow_hypotheses(first + i - 1); });
+  for (std::size_t i = 0; i < count; ++i) {
+    std::vector<PoseHypothesis>& link = hypotheses(first + i - 1);
+    const std::size_t num_own = link.size();
+    for (const PoseHypothesis& pose : borrowed[i]) add_if_new(pose, link);
+    if (chain_.keyframes[first + i].expected) expect(*chain_.keyframes[first + i].expected, first + i - 1);
+    if (sink_) sink_->on_link({position_of(first + i - 1), position_of(first + i), link, num_own});
+  }
+  result_.times.align_s += timed_for(count, [&](std::size_t i) {
+    if (first + i >= 2) chain_.links[first + i - 2].bonus = companion_scores(first + i - 2);
+  });
+  if (options_.loops.close_loops) return;
+  const std::size_t needed = static_cast<std::size_t>(options_.smoothing.more_references) + 2;
+  for (std::size_t i = 0; i + needed < chain_.keyframes.size(); ++i) chain_.keyframes[i].view.reset();
+}
+
+/// Where scans follow each other closely, hypotheses far from where the next was to be expected are less likely.
+void RobustChain::expect(const Pose2& ref_from_query, std::size_t link) {
+  std::vector<PoseHypothesis>& found = hypotheses(link);
+  add_if_new(
+      refined_hypothesis(view_of_keyframe(link), view_of_keyframe(link + 1), ref_from_query, options_.robust.search),
+      found);
+  for (PoseHypothesis& pose : found) pose.score -= surprise(inverse(ref_from_query) * pose.ref_from_query);
+  std::stable_sort(found.begin(), found.end(),
+                   [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.score > b.score; });
+}
+
+std::vector<PoseHypothesis> RobustChain::aligned(std::size_t reference, std::size_t query, SearchKind search,
+                                                 const HypothesisSearchOptions& options) const {
+  return pose_hypotheses(view_of_keyframe(reference), view_of_keyframe(query), options,
+                         {position_of(reference), position_of(query), search}, store_);
+}
+
+/// When a link is in doubt: what scans further back say about it, by way of the best links between.
+std::vector<PoseHypothesis> RobustChain::borrow_hypotheses(std::size_t link) const {
+  std::vector<PoseHypothesis> borrowed;
+  if (starts_log(position_of(link), position_of(link + 1)) || !in_doubt(hypotheses(link))) return borrowed;
+  HypothesisSearchOptions quick = options_.robust.search;
+  quick.hypotheses.all_rotations_below = -std::numeric_limits<double>::infinity();
+  const ScanView& reference = view_of_keyframe(link);
+  const ScanView& query = view_of_keyframe(link + 1);
+  const double limit_m = max_shift_m(reference, query, options_.robust.search.voting);
+  Pose2 far_from_reference;
+  for (std::size_t back = 1; back <= static_cast<std::size_t>(options_.smoothing.more_references); ++back) {
+    if (link < back || hypotheses(link - back).empty()) break;
+    far_from_reference = hypotheses(link - back).front().ref_from_query * far_from_reference;
+    const std::vector<PoseHypothesis> seen_from_far = aligned(link - back, link + 1, SearchKind::kBorrowed, quick);
+    for (std::size_t k = 0; k < std::min(kBorrowed, seen_from_far.size()); ++k) {
+      const Pose2 ref_from_query = inverse(far_from_reference) * seen_from_far[k].ref_from_query;
+      if (ref_from_query.translation().lpNorm<Eigen::Infinity>() > limit_m) continue;
+      borrowed.push_back(refined_hypothesis(reference, query, ref_from_query, options_.robust.search));
+    }
+  }
+  return borrowed;
+}
+
+bool RobustChain::in_doubt(const std::vector<PoseHypothesis>& link) const {
+  return link.empty() || match_probability(link.front(), lead_of_first(link)) < options_.smoothing.doubt_below;
+}
+
+/// For each pair of alternatives of a link and the next: how the far scan then goes with the near one.
+std::vector<std::vector<double>> RobustChain::companion_scores(std::size_t link) const {
+  std::vector<std::vector<double>> scores = no_bonus(chain_.links[link], chain_.links[link + 1]);
+  for (std::size_t a = 0; a < hypotheses(link).size(); ++a) {
+    for (std::size_t b = 0; b < hypotheses(link + 1).size(); ++b) {
+      const Pose2 near_from_far = hypotheses(link)[a].ref_from_query * hypotheses(link + 1)[b].ref_from_query;
+      scores[a][b] = options_.smoothing.companion_weight *
+                     companion_score(visibility(view_of_keyframe(link), view_of_keyframe(link + 2), near_from_far,
+                                                options_.robust.search.visibility, kCompanionSlack));
+    }
+  }
+  return scores;
 }
 
 }  // namespace shapemap

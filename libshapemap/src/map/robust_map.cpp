@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <map>
 
 #include "chains.hpp"
-#include "keyframe_chain.hpp"
 #include "keyframe_map.hpp"
+#include "keyframe_retirement.hpp"
 #include "link_doubts.hpp"
-#include "shapemap/align/robust_align.hpp"
+#include "link_verdict.hpp"
+#include "loop_knowledge.hpp"
+#include "robust_chain.hpp"
 #include "shapemap/core/errors.hpp"
-#include "shapemap/graph/loop_closing.hpp"
-#include "shapemap/scan/joined_logs.hpp"
 #include "sub_scan_poses.hpp"
 
 namespace shapemap {
@@ -24,12 +25,11 @@ class Placing {
       : log_(log), chain_(chain), map_(map), sub_scans_(sub_scans), options_(options), sink_(sink), result_(result) {}
 
   void run() {
-    auto attached = chain_.attached.begin();
-    for (std::size_t i = 0; i < chain_.keyframes.size(); ++i) {
-      place_keyframe(i);
-      for (; attached != chain_.attached.end() && attached->keyframe == i; ++attached) place_attached(*attached);
-    }
+    for (std::size_t i = 0; i < chain_.keyframes.size(); ++i) place_keyframe(i);
+    for (const AttachedScan& scan : chain_.attached) place_attached(scan);
     for (Fragment& fragment : result_.fragments) {
+      std::sort(fragment.positions.begin(), fragment.positions.end(),
+                [](const PlacedPosition& a, const PlacedPosition& b) { return a.position_index < b.position_index; });
       const Pose2 first_from_map = inverse(fragment.positions.front().map_from_robot);
       for (PlacedPosition& placed : fragment.positions) placed.map_from_robot = first_from_map * placed.map_from_robot;
     }
@@ -38,40 +38,19 @@ class Placing {
  private:
   void place_keyframe(std::size_t i) {
     PositionResult& outcome = result_.positions[chain_.keyframes[i].position_index];
-    if (i > 0) judge(i - 1, outcome);
+    if (i > 0 && !chain_.links[i - 1].settled_covariance) {
+      judge_link(log_, chain_, map_, i - 1, options_.robust.confidence, sink_, outcome);
+    }
     outcome.fragment = fragment_of(i);
     outcome.starts_fragment = i == 0 || map_.component[i] != map_.component[i - 1];
     PlacedPosition& placed = add(outcome, map_.map_from_keyframe[i]);
     if (!sub_scans_.empty()) placed.robot_from_sub_scan = sub_scans_[i];
   }
 
-  /// What the alignment to the keyframe before says, now that the whole map has.
-  void judge(std::size_t link, PositionResult& outcome) const {
-    outcome.held_by_loops = map_.held_by_loops[link];
-    const std::size_t before = chain_.keyframes[link].position_index;
-    if (part_with(log_, before) != part_with(log_, outcome.position_index)) return;  // there is nothing to align to
-    const std::vector<PoseHypothesis>& hypotheses = chain_.links[link].hypotheses;
-    const Choice& choice = chain_.links[link].choice;
-    const bool is_cut = map_.link_choice[link] == kCut;
-    const std::size_t taken = is_cut ? choice.alternative : static_cast<std::size_t>(map_.link_choice[link]);
-    const bool is_first_choice = taken == choice.alternative;
-    double margin = choice.margin;
-    if (!is_first_choice) margin = hypotheses[taken].score - hypotheses[choice.alternative].score;
-    outcome.alignment = judged(hypotheses, taken, margin, options_.robust.confidence);
-    outcome.reason = outcome.alignment.reason;
-    if (is_cut && !hypotheses.empty() && outcome.reason.empty()) {
-      outcome.reason =
-          outcome.held_by_loops ? "loops speak against it" : "less probable than it takes not to split the map";
-    }
-    if (sink_ && !hypotheses.empty()) {
-      const std::size_t reference = chain_.keyframes[link].position_index;
-      sink_->on_choice({reference, outcome.position_index, taken, margin});
-    }
-  }
-
   void place_attached(const AttachedScan& scan) {
     PositionResult& outcome = result_.positions[scan.position_index];
     outcome.alignment = judged({scan.pose}, 0, kFullMargin, options_.robust.confidence);
+    outcome.reference = chain_.keyframes[scan.keyframe].position_index;
     outcome.is_keyframe = false;
     outcome.fragment = fragment_of(scan.keyframe);
     add(outcome, map_.map_from_keyframe[scan.keyframe] * scan.pose.ref_from_query);
@@ -106,15 +85,76 @@ class Placing {
   std::map<std::size_t, int> fragment_of_component_;
 };
 
-KeyframeMap map_of(const KeyframeChain& chain, const MappingOptions& options, RunObserver& observer,
-                   AlignmentStore* store) {
-  if (!options.loops.close_loops) return map_of_chain(chain, options);
-  try {
-    return map_with_loops(chain, options, observer, store);
-  } catch (const Interrupted&) {
-    return map_of_chain(chain, options);
+/// After an interrupt nothing more is read, or looked for; what was read is still made one map.
+class Finishing : public RunObserver {
+ public:
+  explicit Finishing(RunObserver& observer) : observer_(observer) {}
+  void on_stage(std::string_view stage) override { observer_.on_stage(stage); }
+  void on_progress(std::size_t done, std::size_t total) override { observer_.on_progress(done, total); }
+  void on_warning(std::string_view message) override { observer_.on_warning(message); }
+
+ private:
+  RunObserver& observer_;
+};
+
+/// Reads the log. When there are many keyframes, loops are closed, and those that are there twice let go.
+class Reading {
+ public:
+  Reading(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink, AlignmentStore* store,
+          MapResult& result)
+      : log_(log),
+        options_(options),
+        observer_(observer),
+        sink_(sink),
+        store_(store),
+        result_(result),
+        growth_(log, options, observer, sink, store, result) {}
+
+  void run() {
+    const auto settle_at = static_cast<std::size_t>(options_.keyframes.settle_at);
+    const bool settles = options_.loops.close_loops && settle_at > 0;
+    std::size_t most = settles ? std::max(settle_at, 4 * kKeyframesInUse) : std::numeric_limits<std::size_t>::max();
+    while (growth_.extend(most)) {
+      settle();
+      const std::size_t kept = chain().keyframes.size();
+      most = kept + std::max(most, kept) / 2;
+    }
   }
-}
+
+  KeyframeChain& chain() { return growth_.chain(); }
+  LoopKnowledge& known() { return known_; }
+
+ private:
+  void settle() {
+    const auto start = std::chrono::steady_clock::now();
+    find_loops(chain(), chain().keyframes.size() - kKeyframesInUse, options_, observer_, store_, known_);
+    if (!observer_.keep_going()) return;
+    const KeyframeMap map = map_with_loops(chain(), known_.hypotheses, options_, observer_);
+    if (!observer_.keep_going()) return;
+    const std::vector<std::optional<StandIn>> stand_ins = find_stand_ins(log_, chain(), map, options_);
+    for (std::size_t i = 0; i < chain().links.size(); ++i) {
+      const bool stays = !stand_ins[i] && !stand_ins[i + 1];
+      if (!stays && !chain().links[i].settled_covariance) judge(map, i);
+    }
+    retire_keyframes(stand_ins, map, options_, chain(), known_);
+    result_.times.loops_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  /// A link that goes has its verdict now.
+  void judge(const KeyframeMap& map, std::size_t link) {
+    PositionResult& outcome = result_.positions[chain().keyframes[link + 1].position_index];
+    judge_link(log_, chain(), map, link, options_.robust.confidence, sink_, outcome);
+  }
+
+  const Log& log_;
+  const MappingOptions& options_;
+  RunObserver& observer_;
+  TraceSink* sink_;
+  AlignmentStore* store_;
+  MapResult& result_;
+  RobustChain growth_;
+  LoopKnowledge known_;
+};
 
 /// Links that were revised have more to choose from than when they were made.
 void trace_revised(const KeyframeChain& chain, TraceSink& sink) {
@@ -130,14 +170,26 @@ void trace_revised(const KeyframeChain& chain, TraceSink& sink) {
 
 void map_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
                   AlignmentStore* store, MapResult& result) {
-  KeyframeChain chain = chain_keyframes(log, options, observer, sink, store, result);
+  Reading reading(log, options, observer, sink, store, result);
+  reading.run();
   const auto start = std::chrono::steady_clock::now();
-  KeyframeMap map = map_of(chain, options, observer, store);
-  SubScanCorrections sub_scans = refine_sub_scans_of_map(log, chain, options, observer, map);
-  if (options.loops.close_loops && revise_doubtful_links(options, observer, chain, map)) {
-    sub_scans = refine_sub_scans_of_map(log, chain, options, observer, map);
+  Finishing finishing(observer);
+  const auto unless_interrupted = [&]() -> RunObserver& { return observer.keep_going() ? observer : finishing; };
+
+  KeyframeChain& chain = reading.chain();
+  KeyframeMap map;
+  if (options.loops.close_loops) {
+    find_loops(chain, chain.keyframes.size(), options, unless_interrupted(), store, reading.known());
+    map = map_with_loops(chain, reading.known().hypotheses, options, unless_interrupted());
+  } else {
+    map = map_of_chain(chain, options);
   }
-  result.times.loops_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  RunObserver& rest = unless_interrupted();
+  SubScanCorrections sub_scans = refine_sub_scans_of_map(log, chain, options, rest, map);
+  if (options.loops.close_loops && revise_doubtful_links(options, rest, chain, map)) {
+    sub_scans = refine_sub_scans_of_map(log, chain, options, rest, map);
+  }
+  result.times.loops_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.loops = std::move(map.loops);
   if (sink) trace_revised(chain, *sink);
   Placing(log, chain, map, sub_scans, options, sink, result).run();

@@ -27,8 +27,7 @@ std::vector<PoseConstraint> links_taken(const KeyframeChain& chain, const Keyfra
   std::vector<PoseConstraint> links;
   for (std::size_t i = 0; i < chain.links.size(); ++i) {
     if (map.link_choice[i] == kCut) continue;
-    const PoseHypothesis& pose = chain.links[i].hypotheses[static_cast<std::size_t>(map.link_choice[i])];
-    links.push_back({i, i + 1, pose.ref_from_query, pose_covariance(pose.fit), 0.0});
+    links.push_back(link_constraint(chain, i, static_cast<std::size_t>(map.link_choice[i])));
   }
   return links;
 }

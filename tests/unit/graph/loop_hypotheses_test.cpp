@@ -66,7 +66,7 @@ TEST(LikelyLoops, FindsThePlacesThatWereSeenBefore) {
   LoopSearchOptions options;
   options.likely_places = 5;
   options.shortest_loop = 30;
-  const std::vector<LoopHypothesis> found = likely_loops(ring().views, quick(), options, 1, nobody);
+  const std::vector<LoopHypothesis> found = likely_loops(ring().views, 0, quick(), options, 1, nobody);
   std::map<std::size_t, std::set<std::size_t>> places;
   std::set<std::size_t> right;
   for (const LoopHypothesis& loop : found) {
@@ -87,28 +87,50 @@ TEST(LikelyLoops, FindsThePlacesThatWereSeenBefore) {
 TEST(LikelyLoops, OfAWalkThatIsTooShortAreNone) {
   RunObserver nobody;
   const test::Views few(ring().views.begin(), ring().views.begin() + 10);
-  EXPECT_TRUE(likely_loops(few, quick(), {}, 1, nobody).empty());
-  EXPECT_TRUE(likely_loops({}, quick(), {}, 1, nobody).empty());
+  EXPECT_TRUE(likely_loops(few, 0, quick(), {}, 1, nobody).empty());
+  EXPECT_TRUE(likely_loops({}, 0, quick(), {}, 1, nobody).empty());
 }
 
 TEST(LikelyLoops, StopsWhenItIsAskedTo) {
   LoopSearchOptions options;
   options.likely_places = 4;
   Patience none(0);
-  EXPECT_THROW(likely_loops(ring().views, quick(), options, 1, none), Interrupted);
+  EXPECT_TRUE(likely_loops(ring().views, 0, quick(), options, 1, none).empty());
   EXPECT_EQ(none.done, 0U);
   Patience one(1);
-  EXPECT_THROW(likely_loops(ring().views, quick(), options, 1, one), Interrupted);
+  const std::vector<LoopHypothesis> some = likely_loops(ring().views, 0, quick(), options, 1, one);
   EXPECT_GT(one.done, 0U);
   EXPECT_LT(one.done, one.total);
+  RunObserver nobody;
+  EXPECT_LT(some.size(), likely_loops(ring().views, 0, quick(), options, 1, nobody).size());
+}
+
+/// What is found of the first nodes and of the others, one after the other, is what is found of all.
+TEST(LikelyLoops, CanBeLookedForInParts) {
+  LoopSearchOptions options;
+  options.likely_places = 2;
+  RunObserver nobody;
+  const std::vector<LoopHypothesis> all = likely_loops(ring().views, 0, quick(), options, 1, nobody);
+  const NodeViews begin(ring().views.begin(), ring().views.begin() + 30);
+  std::vector<LoopHypothesis> parts = likely_loops(begin, 0, quick(), options, 1, nobody);
+  const std::size_t num_first = parts.size();
+  for (const LoopHypothesis& loop : likely_loops(ring().views, 30, quick(), options, 1, nobody)) parts.push_back(loop);
+  ASSERT_EQ(parts.size(), all.size());
+  EXPECT_GT(num_first, 0U);
+  EXPECT_LT(num_first, all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(parts[i].a, all[i].a);
+    EXPECT_EQ(parts[i].b, all[i].b);
+    EXPECT_EQ(parts[i].log_odds, all[i].log_odds);
+  }
 }
 
 TEST(LikelyLoops, AreTheSameToTheBitForAnyNumberOfThreads) {
   RunObserver nobody;
   LoopSearchOptions options;
   options.likely_places = 2;
-  const std::vector<LoopHypothesis> one = likely_loops(ring().views, quick(), options, 1, nobody);
-  const std::vector<LoopHypothesis> three = likely_loops(ring().views, quick(), options, 3, nobody);
+  const std::vector<LoopHypothesis> one = likely_loops(ring().views, 0, quick(), options, 1, nobody);
+  const std::vector<LoopHypothesis> three = likely_loops(ring().views, 0, quick(), options, 3, nobody);
   ASSERT_EQ(one.size(), three.size());
   ASSERT_FALSE(one.empty());
   for (std::size_t i = 0; i < one.size(); ++i) {

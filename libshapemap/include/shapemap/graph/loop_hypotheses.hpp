@@ -35,13 +35,14 @@ struct LoopSearchOptions {
 
 using NodeViews = std::vector<std::shared_ptr<const ScanView>>;
 
-/// Each node, aligned to the earlier ones that look most alike. Throws Interrupted when the observer asks to stop.
-/// `store`, by the numbers of the nodes, may be null.
-std::vector<LoopHypothesis> likely_loops(const NodeViews& views, const HypothesisSearchOptions& search,
-                                         const LoopSearchOptions& options, int threads, RunObserver& observer,
-                                         AlignmentStore* store = nullptr);
+/// Each node from `first` on, aligned to the earlier ones that look most alike. Stops with what was found by then when
+/// the observer asks to. `store`, by the numbers of the nodes, may be null.
+std::vector<LoopHypothesis> likely_loops(const NodeViews& views, std::size_t first,
+                                         const HypothesisSearchOptions& search, const LoopSearchOptions& options,
+                                         int threads, RunObserver& observer, AlignmentStore* store = nullptr);
 
-/// The few nodes before and after each of `links` (node i to node i + 1), all aligned to each other.
+/// The few nodes before and after each of `links` (node i to node i + 1), all aligned to each other. Throws Interrupted
+/// when the observer asks to stop.
 std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<std::size_t>& links,
                                     const HypothesisSearchOptions& search, int threads, RunObserver& observer,
                                     AlignmentStore* store = nullptr);

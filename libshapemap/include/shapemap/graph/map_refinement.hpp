@@ -32,11 +32,15 @@ struct RefinementOptions {
   }
 };
 
+struct RefinedMap {
+  std::vector<Pose2> map_from_node;
+  std::vector<PoseConstraint> neighbours;  ///< the alignments that it was last solved with, beside the chain
+};
+
 /// Aligns all scans that see the same from where the map has them, beside `chain`, and solves for all of it; several
 /// times, since what is nearer to right aligns better. Stops between two times when the observer asks to.
-std::vector<Pose2> refine_map(const std::vector<std::shared_ptr<const ScanView>>& views,
-                              std::vector<Pose2> map_from_node, const std::vector<PoseConstraint>& chain,
-                              const HypothesisSearchOptions& search, const RefinementOptions& options, int threads,
-                              RunObserver& observer);
+RefinedMap refine_map(const std::vector<std::shared_ptr<const ScanView>>& views, std::vector<Pose2> map_from_node,
+                      const std::vector<PoseConstraint>& chain, const HypothesisSearchOptions& search,
+                      const RefinementOptions& options, int threads, RunObserver& observer);
 
 }  // namespace shapemap

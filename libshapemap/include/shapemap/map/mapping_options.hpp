@@ -29,6 +29,7 @@ struct EnumNames<Method> {
 struct KeyframeOptions {
   double step_m = 0.50;
   double turn_rad = 20 * kDegree;
+  int settle_at = 2000;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -36,6 +37,10 @@ struct KeyframeOptions {
                 "a scan nearer than this to a keyframe needs none of its own [m]; 0: each has its own", 0, 10},
           self.step_m);
     visit(Field{"keyframe-turn-deg", "unless it is turned by more [deg]", 0, 180, kDegree}, self.turn_rad);
+    visit(Field{"settle-at",
+                "when there are so many keyframes, loops are closed and those that are there twice let go; 0: never", 0,
+                1000000},
+          self.settle_at);
   }
 };
 

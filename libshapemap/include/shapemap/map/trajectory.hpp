@@ -25,13 +25,16 @@ struct Fragment {
   std::vector<PlacedPosition> positions;
 };
 
+inline constexpr std::size_t kNoReference = static_cast<std::size_t>(-1);
+
 /// What became of one position of the log, whether placed or not.
 struct PositionResult {
   std::size_t position_index = 0;
   double timestamp_s = 0.0;
   int fragment = -1;  ///< index into MapResult::fragments; -1: no usable shape, in no fragment
   bool starts_fragment = false;
-  Alignment alignment;  ///< against the scans before it; meaningless for the first position
+  Alignment alignment;                   ///< against the scans before it; meaningless for the first position
+  std::size_t reference = kNoReference;  ///< the position that it is to, where that is not the last keyframe before it
   /// Loops hold this position where it is, even if that alignment was wrong.
   bool held_by_loops = false;
   bool is_keyframe = true;

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "keyframe_chain.hpp"
+
+#include <algorithm>
+
+namespace shapemap {
+namespace {
+
+/// A link that may be nothing is one choice as well.
+std::size_t num_choices(const KeyframeLink& link) { return std::max<std::size_t>(link.hypotheses.size(), 1); }
+
+}  // namespace
+
+PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std::size_t k) {
+  const KeyframeLink& of = chain.links[link];
+  const PoseHypothesis& pose = of.hypotheses[k];
+  const Eigen::Matrix3d covariance = of.settled_covariance ? *of.settled_covariance : pose_covariance(pose.fit);
+  return {link, link + 1, pose.ref_from_query, covariance, 0.0};
+}
+
+double link_probability(const KeyframeLink& link, const ConfidenceOptions& options) {
+  if (link.settled_covariance) return 1.0;
+  return judged(link.hypotheses, link.choice.alternative, link.choice.margin, options).probability;
+}
+
+std::vector<std::vector<double>> no_bonus(const KeyframeLink& link, const KeyframeLink& next) {
+  return {num_choices(link), std::vector<double>(num_choices(next), 0.0)};
+}
+
+void choose_hypotheses(KeyframeChain& chain) {
+  ChoiceChain choices;
+  for (const KeyframeLink& link : chain.links) {
+    std::vector<double>& scores = choices.scores.emplace_back();
+    for (const PoseHypothesis& pose : link.hypotheses) scores.push_back(pose.score);
+    scores.resize(num_choices(link), 0.0);
+    choices.bonus.push_back(link.bonus);
+  }
+  const std::vector<Choice> best = best_choices(choices, kFullMargin);
+  for (std::size_t i = 0; i < chain.links.size(); ++i) chain.links[i].choice = best[i];
+}
+
+}  // namespace shapemap

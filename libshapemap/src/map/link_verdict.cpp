@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "link_verdict.hpp"
+
+#include "shapemap/graph/loop_closing.hpp"
+#include "shapemap/scan/joined_logs.hpp"
+
+namespace shapemap {
+
+void judge_link(const Log& log, const KeyframeChain& chain, const KeyframeMap& map, std::size_t link,
+                const ConfidenceOptions& options, TraceSink* sink, PositionResult& outcome) {
+  outcome.held_by_loops = map.held_by_loops[link];
+  const std::size_t before = chain.keyframes[link].position_index;
+  if (part_with(log, before) != part_with(log, outcome.position_index)) return;  // there is nothing to align to
+  outcome.reference = before;
+  const std::vector<PoseHypothesis>& hypotheses = chain.links[link].hypotheses;
+  const Choice& choice = chain.links[link].choice;
+  const bool is_cut = map.link_choice[link] == kCut;
+  const std::size_t taken = is_cut ? choice.alternative : static_cast<std::size_t>(map.link_choice[link]);
+  const bool is_first_choice = taken == choice.alternative;
+  double margin = choice.margin;
+  if (!is_first_choice) margin = hypotheses[taken].score - hypotheses[choice.alternative].score;
+  outcome.alignment = judged(hypotheses, taken, margin, options);
+  outcome.reason = outcome.alignment.reason;
+  if (is_cut && !hypotheses.empty() && outcome.reason.empty()) {
+    outcome.reason =
+        outcome.held_by_loops ? "loops speak against it" : "less probable than it takes not to split the map";
+  }
+  if (sink && !hypotheses.empty()) sink->on_choice({before, outcome.position_index, taken, margin});
+}
+
+}  // namespace shapemap
