@@ -28,8 +28,8 @@ from shapemap_sim.simulation import Simulation
 from shapemap_sim.write import nist_text, tum_text, write_whole
 from simulate_arena import number
 
-EXAMPLE = """The office is 40 x 25 m, with rooms on both sides of a corridor all around; each lap is somewhat different, the
-robot goes into some of the rooms and turns back at times. The laser has 181 beams, with noise; there is no odometry.
+EXAMPLE = """The office is 40 x 25 m, with rooms on both sides of a corridor all around; each lap is somewhat different,
+the robot goes into some of the rooms and turns back at times. The laser has 181 beams and noise; there is no odometry.
 
 CPU time per scan of a part of the log is the difference between two runs, on the log to its beginning and to its end:
 measure on an idle machine.

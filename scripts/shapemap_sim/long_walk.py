@@ -49,6 +49,10 @@ class Target:
     reached_m: float
 
 
+def target(place: Array, reached_m: float) -> Target:
+    return Target(float(place[0]), float(place[1]), reached_m)
+
+
 def targets(office: Office, options: WalkOptions, rng: np.random.Generator) -> Iterator[Target]:
     """Without end."""
     stations: list[Array | Room] = []
@@ -60,7 +64,7 @@ def targets(office: Office, options: WalkOptions, rng: np.random.Generator) -> I
         is_room = isinstance(station, Room)
         place = station.in_front if isinstance(station, Room) else station
         aside = np.clip(options.lateral_sigma_m * rng.standard_normal(2), -0.4, 0.4)
-        yield Target(*(place + aside), 0.3)
+        yield target(place + aside, 0.3)
         if isinstance(station, Room) and rng.random() < options.enter:
             yield from _visit(station, rng)
         if is_room and rng.random() < options.turn_back:
@@ -70,14 +74,14 @@ def targets(office: Office, options: WalkOptions, rng: np.random.Generator) -> I
 
 def _visit(room: Room, rng: np.random.Generator) -> Iterator[Target]:
     """In, about, and out again."""
-    yield Target(*room.in_front, 0.1)
-    yield Target(*(room.door + rng.uniform(-0.05, 0.05, 2)), 0.05)
-    yield Target(*room.inside, 0.2)
+    yield target(room.in_front, 0.1)
+    yield target(room.door + rng.uniform(-0.05, 0.05, 2), 0.05)
+    yield target(room.inside, 0.2)
     for _ in range(int(rng.integers(1, 4))):
-        yield Target(*(room.middle + rng.uniform(-0.7, 0.7, 2) * STROLL_M), 0.15)
-    yield Target(*room.inside, 0.1)
-    yield Target(*(room.door + rng.uniform(-0.05, 0.05, 2)), 0.05)
-    yield Target(*room.in_front, 0.3)
+        yield target(room.middle + rng.uniform(-0.7, 0.7, 2) * STROLL_M, 0.15)
+    yield target(room.inside, 0.1)
+    yield target(room.door + rng.uniform(-0.05, 0.05, 2), 0.05)
+    yield target(room.in_front, 0.3)
 
 
 def walk(office: Office, options: WalkOptions, seed: int) -> tuple[Array, Array]:

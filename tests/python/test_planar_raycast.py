@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -16,7 +18,7 @@ from shapemap_sim.world import World
 HEIGHT_M = 0.35
 
 
-WORLDS = {
+WORLDS: dict[str, Callable[[], World]] = {
     "building": lambda: furnished_building(3, BuildingOptions()),
     "arena with leaning boards and curved walls": lambda: build_world(4, ArenaOptions()),
     "inside of a circle": round_room,
