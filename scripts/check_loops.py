@@ -21,7 +21,7 @@ from evaluation.logs import EvaluationLog
 from evaluation.loop_check import FALSE, IMPRECISE, CheckedLoop, Limits, check_loops, describe, num_of, table
 from evaluation.mapping import Mapper
 from evaluation.programs import Failure
-from evaluation.selection import add_datasets_argument, add_mapper_arguments, mapper_from, selected_logs
+from evaluation.selection import add_mapper_arguments, mapper_from, parse_with_logs, parser_for_logs, selected_logs
 from shapemap_sim.write import write_whole
 from simulate_arena import number
 
@@ -38,12 +38,8 @@ Exit status: 0 no loop is false, 1 one is, or a log is missing, gave no map or h
 
 
 def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        description=__doc__, epilog=EXAMPLE, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_for_logs(__doc__, EXAMPLE)
     add = parser.add_argument
-    add("logs", nargs="*", metavar="LOG", help="path, or path below SHAPEMAP_DATASETS")
-    add_datasets_argument(parser)
     limits = Limits()
     for name, default, unit, what in (
         ("--false-m", limits.false_m, "M", "a loop farther off than this is false"),
@@ -54,9 +50,7 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
         add(name, type=number(0, 1000), default=default, metavar=unit, help=f"{what} (default %(default)g)")
     add("--list-imprecise", action="store_true", help="list also those that are imprecise")
     add_mapper_arguments(parser)
-    arguments = parser.parse_args(argv)
-    if not arguments.logs and not arguments.only:
-        parser.error("no LOG and no --only")
+    arguments = parse_with_logs(parser, argv)
     arguments.limits = Limits(arguments.false_m, arguments.false_deg, arguments.imprecise_m, arguments.imprecise_deg)
     return arguments
 
@@ -90,12 +84,11 @@ def as_json(checked: dict[str, list[CheckedLoop]], arguments: argparse.Namespace
 def main(argv: list[str] | None = None) -> int:
     arguments = parse_arguments(argv)
     checked: dict[str, list[CheckedLoop]] = {}
-    with tempfile.TemporaryDirectory(prefix="loops_logs_") as folder:
-        try:
-            logs, num_faults = selected_logs(arguments.logs, arguments, Path(folder), complain)
-        except (DatasetError, OSError) as error:
-            complain(str(error))
-            return 3
+    try:
+        logs, num_faults = selected_logs(arguments, complain)
+    except (DatasetError, OSError) as error:
+        complain(str(error))
+        return 3
     for log in tqdm(logs, desc="mapping", disable=None, leave=False):
         if log.reference is None:
             complain(f"SKIPPED {log.name}, no reference poses")

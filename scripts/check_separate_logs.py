@@ -21,7 +21,7 @@ from evaluation.datasets import DatasetError
 from evaluation.logs import EvaluationLog
 from evaluation.mapping import Mapper, absolute_errors_m, root_mean_square
 from evaluation.programs import Failure
-from evaluation.selection import add_datasets_argument, add_mapper_arguments, mapper_from, selected_logs
+from evaluation.selection import add_mapper_arguments, mapper_from, parse_with_logs, parser_for_logs, selected_logs
 from evaluation.several_logs import describe, halves, joints, num_in_first_half
 from shapemap_sim.write import write_whole
 from simulate_arena import number
@@ -47,12 +47,8 @@ class Outcome:
 
 
 def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        description=__doc__, epilog=EXAMPLE, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_for_logs(__doc__, EXAMPLE)
     add = parser.add_argument
-    add("logs", nargs="*", metavar="LOG", help="path, or path below SHAPEMAP_DATASETS")
-    add_datasets_argument(parser)
     how = parser.add_mutually_exclusive_group()
     how.add_argument("--pairs", action="store_true", help="a run for each pair of logs instead of one for all")
     how.add_argument("--with-itself", action="store_true", help="a run for each log: its two halves must be joined")
@@ -64,10 +60,7 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
         help="halves with a larger error are joined wrongly (default %(default)g)",
     )
     add_mapper_arguments(parser)
-    arguments = parser.parse_args(argv)
-    if not arguments.logs and not arguments.only:
-        parser.error("no LOG and no --only")
-    return arguments
+    return parse_with_logs(parser, argv)
 
 
 def complain(text: str) -> None:
@@ -144,12 +137,11 @@ def outcome_of(logs: Sequence[EvaluationLog], arguments: argparse.Namespace) -> 
 
 def main(argv: list[str] | None = None) -> int:
     arguments = parse_arguments(argv)
-    with tempfile.TemporaryDirectory(prefix="separate_") as folder:
-        try:
-            logs, num_missing = selected_logs(arguments.logs, arguments, Path(folder), complain)
-        except (DatasetError, OSError) as error:
-            complain(str(error))
-            return 3
+    try:
+        logs, num_missing = selected_logs(arguments, complain)
+    except (DatasetError, OSError) as error:
+        complain(str(error))
+        return 3
     if len(logs) < (1 if arguments.with_itself else 2):
         complain("too few logs at hand")
         return 1

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
@@ -23,6 +24,23 @@ def add_datasets_argument(parser: argparse.ArgumentParser) -> None:
     default = PROJECT / "datasets/datasets.toml"
     parser.add_argument("--datasets", type=Path, default=default, metavar="FILE", help="what there is")
     parser.add_argument("--only", type=name_list, default=[], metavar="LIST", help="only these data sets or logs")
+
+
+def parser_for_logs(description: str | None, example: str) -> argparse.ArgumentParser:
+    """Knows LOG ..., --datasets and --only."""
+    parser = argparse.ArgumentParser(
+        description=description, epilog=example, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("logs", nargs="*", metavar="LOG", help="path, or path below SHAPEMAP_DATASETS")
+    add_datasets_argument(parser)
+    return parser
+
+
+def parse_with_logs(parser: argparse.ArgumentParser, argv: list[str] | None) -> argparse.Namespace:
+    arguments = parser.parse_args(argv)
+    if not arguments.logs and not arguments.only:
+        parser.error("no LOG and no --only")
+    return arguments
 
 
 def add_mapper_arguments(parser: argparse.ArgumentParser, timeout_s: float = 3600.0) -> None:
@@ -55,21 +73,20 @@ def named_spec(name: str) -> LogSpec:
     return LogSpec(stem, stem, "as the log says", "slam", path=path, relations=relations_beside(path))
 
 
-def selected_logs(
-    names: list[str], arguments: argparse.Namespace, folder: Path, complain: Callable[[str], None]
-) -> tuple[list[EvaluationLog], int]:
-    """The logs `names`, then the data sets of --only, and how many of them are missing; what is made for them goes to
-    `folder`. Raises DatasetError or OSError."""
-    specs = [named_spec(name) for name in names]
+def selected_logs(arguments: argparse.Namespace, complain: Callable[[str], None]) -> tuple[list[EvaluationLog], int]:
+    """Those that are named, then those of --only, and how many of them are missing. Raises DatasetError or OSError."""
+    specs = [named_spec(name) for name in arguments.logs]
     if arguments.only:
         specs += select(read_datasets(arguments.datasets, datasets_folder()), arguments.only)
-    twice = sorted({spec.name for spec in specs if sum(spec.name == other.name for other in specs) > 1})
+    names = [spec.name for spec in specs]
+    twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise DatasetError(f"twice: {', '.join(twice)}")
     logs = []
-    for spec in specs:
-        if spec.missing:
-            complain(f"SKIPPED {spec.name}, missing: {', '.join(str(path) for path in spec.missing)}")
-        else:
-            logs.append(load(spec, folder, arguments.cli))
+    with tempfile.TemporaryDirectory(prefix="logs_") as folder:  # for those that are simulated or converted
+        for spec in specs:
+            if spec.missing:
+                complain(f"SKIPPED {spec.name}, missing: {', '.join(str(path) for path in spec.missing)}")
+            else:
+                logs.append(load(spec, Path(folder), arguments.cli))
     return logs, len(specs) - len(logs)
