@@ -85,7 +85,7 @@ def check_apart(logs: Sequence[EvaluationLog], mapper: Mapper) -> Outcome:
     num_fragments = len(report["fragments"])
     together = " + ".join(f"{log.name} ({len(log)})" for log in logs)
     verdict = f"{len(found)} JOINED" if found else "nothing joined"
-    lines = [f"{together}: {verdict}, {num_fragments} fragments, {usage.cpu_s:.0f} s of CPU time"]
+    lines = [f"{together}: {verdict}, fragments: {num_fragments}, {usage.cpu_s:.0f} s of CPU time"]
     lines += [f"  {describe(joint, names)}" for joint in found]
     joined = [
         {
@@ -115,7 +115,7 @@ def check_halves(log: EvaluationLog, mapper: Mapper, most_ate_m: float) -> Outco
     verdict = "joined" if is_right else "joined WRONGLY" if found else "NOT joined"
     error = "no reference" if ate_m is None else f"ATE {100 * ate_m:.1f} cm"
     placed = f"{report['num_placed']} of {report['num_positions']} positions"
-    head = f"{log.name} in two halves: {verdict}, {len(report['fragments'])} fragments"
+    head = f"{log.name} in two halves: {verdict}, fragments: {len(report['fragments'])}"
     lines = [f"{head}, {placed} in the map, {error}, {usage.cpu_s:.0f} s of CPU time"]
     lines += [f"  {describe(joint, names)}" for joint in found]
     fields = {"log": log.name, "joined": bool(found), "right": is_right, "ate_m": ate_m}

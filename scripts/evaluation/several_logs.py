@@ -40,7 +40,7 @@ def describe(joint: Joint, names: Sequence[str]) -> str:
     (one, other), (num_one, num_other) = joint.logs, joint.num_positions
     by = "no loop between them"
     if joint.strengths:
-        by = f"{len(joint.strengths)} loops between them, strongest {joint.strengths[0]:.1f}"
+        by = f"loops between them: {len(joint.strengths)}, strongest {joint.strengths[0]:.1f}"
     return (
         f"{names[one]} and {names[other]} joined in fragment {joint.fragment}: "
         f"{num_one} and {num_other} positions, {by}"

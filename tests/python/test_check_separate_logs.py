@@ -42,7 +42,7 @@ def test_a_fragment_of_two_logs_is_a_joint_with_the_loops_between_them() -> None
     (one,) = joints(report_on([{2: 3}, {1: 4, 0: 5}], [(1, 0, 3.0), (0, 1, 8.0), (2, 2, 20.0)]))
     assert (one.logs, one.fragment, one.num_positions, one.strengths) == ((0, 1), 1, (5, 4), (8.0, 3.0))
     text = describe(one, ["a", "b", "c"])
-    assert text == "a and b joined in fragment 1: 5 and 4 positions, 2 loops between them, strongest 8.0"
+    assert text == "a and b joined in fragment 1: 5 and 4 positions, loops between them: 2, strongest 8.0"
 
 
 def test_logs_that_are_joined_by_way_of_another_one_are_told() -> None:
@@ -75,13 +75,13 @@ def run(tmp_path: Path, change: str, *words: str, names: str = "abc") -> tuple[i
 def test_logs_that_stay_apart_are_right(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     status, content = run(tmp_path, "")
     assert (status, content["runs"][0]["joined"], content["runs"][0]["num_fragments"]) == (0, [], 3)
-    assert "a (6) + b (7) + c (8): nothing joined, 3 fragments" in capsys.readouterr().out
+    assert "a (6) + b (7) + c (8): nothing joined, fragments: 3" in capsys.readouterr().out
 
 
 def test_a_joint_is_an_error_and_says_whose(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     status, content = run(tmp_path, JOIN)
     assert (status, content["runs"][0]["joined"][0]["logs"]) == (1, ["a", "c"])
-    assert "a and c joined in fragment 0: 6 and 8 positions, 1 loops between them" in capsys.readouterr().out
+    assert "a and c joined in fragment 0: 6 and 8 positions, loops between them: 1, strongest 5.0" in capsys.readouterr().out
 
 
 def test_pairs_are_runs_of_their_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -94,9 +94,9 @@ def test_pairs_are_runs_of_their_own(tmp_path: Path, capsys: pytest.CaptureFixtu
 @pytest.mark.parametrize(
     ("change", "verdict", "status"),
     [
-        (GO_ON + JOIN, "joined, 1 fragments", 0),
+        (GO_ON + JOIN, "joined, fragments: 1", 0),
         (GO_ON + JOIN + "\npositions[-1]['map_from_robot']['y_m'] = 9.0", "joined WRONGLY", 1),
-        (GO_ON, "NOT joined, 2 fragments", 1),
+        (GO_ON, "NOT joined, fragments: 2", 1),
     ],
 )
 def test_halves_of_a_log_must_be_joined_rightly(
