@@ -81,7 +81,8 @@ def test_logs_that_stay_apart_are_right(tmp_path: Path, capsys: pytest.CaptureFi
 def test_a_joint_is_an_error_and_says_whose(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     status, content = run(tmp_path, JOIN)
     assert (status, content["runs"][0]["joined"][0]["logs"]) == (1, ["a", "c"])
-    assert "a and c joined in fragment 0: 6 and 8 positions, loops between them: 1, strongest 5.0" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert "a and c joined in fragment 0: 6 and 8 positions, loops between them: 1, strongest 5.0" in out
 
 
 def test_pairs_are_runs_of_their_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
