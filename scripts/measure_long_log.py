@@ -17,8 +17,8 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from evaluation.growth import Growth, first_and_last, memory_line, prefixes, table
-from evaluation.mapping import Mapper, absolute_errors_m, root_mean_square
+from evaluation.growth import Growth, first_and_last, memory_line, prefixes, stretches, table, wrong_places
+from evaluation.mapping import Mapper, absolute_errors_m, placed_poses, root_mean_square
 from evaluation.programs import Failure
 from evaluation.sampling import Sampler
 from evaluation.selection import add_mapper_arguments, mapper_from
@@ -107,6 +107,7 @@ def measured(simulation: Simulation, mapper: Mapper) -> Growth:
         num_placed=report["num_placed"],
         ate_m=root_mean_square(errors_m),
         worst_m=float(errors_m.max()) if len(errors_m) else math.nan,
+        far_off=stretches(dict(zip(sorted(placed_poses(report)), errors_m.tolist()))),
         stages_s=report["seconds"],
         samples=sampler.samples,
     )
@@ -138,7 +139,12 @@ def main(argv: list[str] | None = None) -> int:
             tqdm.write(f"measure_long_log.py: {num} scans: {runs[-1].fault}", file=sys.stderr)
         if arguments.json:  # after each: the longer ones may take hours
             write_json(arguments.json, runs, options, arguments)
-    lines = [table(runs), first_and_last(runs, arguments.last), memory_line(runs[-1])]
+    lines = [
+        table(runs),
+        "\n".join(filter(None, map(wrong_places, runs))),
+        first_and_last(runs, arguments.last),
+        memory_line(runs[-1]),
+    ]
     print("\n\n".join(line for line in lines if line))
     return 1 if any(run.fault for run in runs) else 0
 

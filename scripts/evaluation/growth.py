@@ -3,10 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from .sampling import Sample
+
+FAR_OFF_M = 0.5
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Scans one after the other that are far off; the worst of them by `worst_m`."""
+
+    first: int
+    last: int
+    worst_m: float
 
 
 @dataclass(frozen=True)
@@ -23,8 +34,28 @@ class Growth:
     num_placed: int = 0
     ate_m: float = float("nan")
     worst_m: float = float("nan")
+    far_off: list[Stretch] = field(default_factory=list)
     stages_s: dict[str, float] = field(default_factory=dict)
     samples: list[Sample] = field(default_factory=list, repr=False)
+
+
+def stretches(errors_m: Mapping[int, float], limit_m: float = FAR_OFF_M) -> list[Stretch]:
+    """Those of the scans with errors above the limit."""
+    found: list[Stretch] = []
+    for scan in sorted(scan for scan, error in errors_m.items() if error > limit_m):
+        before = found[-1] if found and found[-1].last == scan - 1 else None
+        if before is None:
+            found.append(Stretch(scan, scan, errors_m[scan]))
+        else:
+            found[-1] = Stretch(before.first, scan, max(before.worst_m, errors_m[scan]))
+    return found
+
+
+def wrong_places(run: Growth) -> str:
+    """A line for each stretch; empty without."""
+    return "\n".join(
+        f"of {run.num_scans} scans, {one.first} to {one.last} are up to {one.worst_m:.2f} m off" for one in run.far_off
+    )
 
 
 def prefixes(num_scans: int, last: int) -> list[int]:

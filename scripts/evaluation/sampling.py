@@ -65,4 +65,5 @@ def sample_of(process: int, wall_s: float) -> Sample | None:
     except OSError:
         return None
     cpu_s = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")  # utime and stime; the state is field 0
-    return Sample(wall_s, cpu_s, int(fields[21]) * os.sysconf("SC_PAGE_SIZE") / 2**20)
+    rss_mib = int(fields[21]) * os.sysconf("SC_PAGE_SIZE") / 2**20
+    return Sample(wall_s, cpu_s, rss_mib) if rss_mib > 0.0 else None  # none: it ended, and nobody waited for it yet

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import measure_long_log
-from evaluation.growth import Growth, first_and_last, memory_line, prefixes, table
+from evaluation.growth import Growth, Stretch, first_and_last, memory_line, prefixes, stretches, table, wrong_places
 from evaluation.programs import run_measured
 from evaluation.sampling import Sample, Sampler
 from evaluation_support import program, reporter
@@ -109,6 +109,13 @@ def test_without_the_runs_for_it_nothing_is_compared() -> None:
     failed = [Growth(1000, "no end after 5 s"), *runs()[1:]]
     assert first_and_last(failed, 1000) == ""
     assert "| 1000 | no map: no end after 5 s |" in table(failed)
+
+
+def test_what_is_far_off_is_told_in_stretches() -> None:
+    found = stretches({0: 0.1, 3: 0.7, 4: 2.0, 5: 0.6, 6: 0.5, 7: 9.0})
+    assert found == [Stretch(3, 5, 2.0), Stretch(7, 7, 9.0)]
+    assert wrong_places(Growth(8, far_off=found)).splitlines()[0] == "of 8 scans, 3 to 5 are up to 2.00 m off"
+    assert wrong_places(Growth(8)) == ""
 
 
 def test_memory_over_time_is_at_equal_parts_of_it() -> None:
