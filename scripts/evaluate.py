@@ -27,6 +27,7 @@ from evaluation.methods import ALL, CEILING, Programs, with_feeds
 from evaluation.results import assemble, save
 from evaluation.runs import Job
 from evaluation.schedule import Schedule
+from evaluation.selection import add_datasets_argument, datasets_folder, name_list
 from simulate_arena import number
 
 BIN = PROJECT / "build/release/bin"
@@ -43,17 +44,12 @@ Exit status: 0 all runs gave a result, 1 some failed or a log asked for by --onl
 3 malformed data sets, logs or references (nothing was run), 130 interrupted (what was done is reported)."""
 
 
-def name_list(text: str) -> list[str]:
-    return [name for name in text.split(",") if name]
-
-
 def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, epilog=EXAMPLE, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     add = parser.add_argument
-    add("--datasets", type=Path, default=PROJECT / "datasets/datasets.toml", metavar="FILE", help="what there is")
-    add("--only", type=name_list, default=[], metavar="LIST", help="only these data sets or logs")
+    add_datasets_argument(parser)
     add("--seeds", type=parse_seeds, metavar="LIST", help="of the arenas, instead of those in the file, such as 0-4")
     add("--methods", type=name_list, default=list(ALL), metavar="LIST", help="only these (default all, see below)")
     add("--quick", action="store_true", help="the demo log only, at most 15 s for a run: under two minutes")
@@ -92,10 +88,7 @@ def complain(text: str) -> None:
 
 def logs_at_hand(arguments: argparse.Namespace) -> tuple[list[EvaluationLog], list[dict[str, str]]]:
     """Those that are there, and those that are not, each named. Raises DatasetError or OSError."""
-    folder = os.environ.get("SHAPEMAP_DATASETS")
-    specs: list[LogSpec] = select(
-        read_datasets(arguments.datasets, Path(folder) if folder else None, arguments.seeds), arguments.only
-    )
+    specs: list[LogSpec] = select(read_datasets(arguments.datasets, datasets_folder(), arguments.seeds), arguments.only)
     logs, skipped = [], []
     for spec in tqdm(specs, desc="reading", disable=None, leave=False):
         if spec.missing:

@@ -9,7 +9,7 @@ import os
 import signal
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -43,14 +43,19 @@ def has_option(program: Path, option: str) -> bool:
     return option in (done.stdout + done.stderr).replace(",", " ").split()
 
 
-def run_measured(command: Sequence[object], folder: Path, timeout_s: float) -> Usage:
-    """Runs a program to its end, in a group of its own that ends with it. Raises Failure."""
+def run_measured(
+    command: Sequence[object], folder: Path, timeout_s: float, started: Callable[[int], None] | None = None
+) -> Usage:
+    """Runs a program to its end, in a group of its own that ends with it; `started` gets the process that starts it.
+    Raises Failure."""
     check_program(Path(str(command[0])))
     usage_path = folder / "usage.json"
     whole = [sys.executable, "-I", "-S", str(LAUNCHER), str(usage_path), *(str(word) for word in command)]
     with (folder / "stderr.txt").open("w+", encoding="utf-8", errors="replace") as errors:
         process = subprocess.Popen(whole, stdout=subprocess.DEVNULL, stderr=errors, start_new_session=True)
         try:
+            if started is not None:
+                started(process.pid)
             process.wait(timeout=timeout_s)
         except subprocess.TimeoutExpired:
             raise Failure(f"no end after {timeout_s:g} s") from None

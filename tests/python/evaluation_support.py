@@ -78,8 +78,7 @@ def carmen_text(num_scans: int = NUM_SCANS) -> str:
 
 
 def line_log(folder: Path, reference: str = "slam", **fields: object) -> EvaluationLog:
-    path = folder / "line.log"
-    path.write_text(carmen_text(), encoding="utf-8")
+    path = written_log(folder)
     spec = LogSpec("line", "line", "SICK", reference, path=path, **fields)  # type: ignore[arg-type]
     return load(spec, folder / "logs", Path("/no/cli"))
 
@@ -90,3 +89,38 @@ def job(folder: Path, method: str, log: EvaluationLog, programs: Programs, timeo
 
 def straight(num: int, step_m: float = 1.0) -> np.ndarray:
     return np.array([[k * step_m, 0.0, 0.0] for k in range(num)])
+
+
+# Writes a report: of each log a fragment whose position k is at (k, 0). `change` may alter it, and knows the words that
+# were passed on.
+REPORTER = f"""import json, math, sys
+words = sys.argv[1:]
+logs, passed_on = words[:words.index('--out')], words[words.index('--force') + 1:]
+positions, fragments = [], []
+for log, path in enumerate(logs):
+    text = open(path).read()
+    if (not text.startswith('shapemap-scans') and '{ODOMETRY}' in text) or ' reference ' in text:
+        sys.exit('got odometry or poses')
+    num = sum(line.startswith(('FLASER', 'position')) for line in text.splitlines())
+    fragments.append(dict(fragment=log, logs=[dict(log=log, num_positions=num)]))
+    for k in range(num):
+        positions.append(dict(index=len(positions), log=log, index_in_whole_log=k, is_keyframe=k % 2 == 0,
+                              map_from_robot=dict(x_m=k, y_m=0.0, theta_deg=0.0)))
+def loop(a, b, x_m, y_m=0.0, theta_deg=0.0, strength=5.0):
+    return dict(a=a, b=b, a_from_b=dict(x_m=x_m, y_m=y_m, theta_deg=theta_deg), strength=strength)
+report = dict(positions=positions, fragments=fragments, loops=[], num_positions=len(positions),
+              num_placed=len(positions), seconds=dict(loops=0.5))
+CHANGE
+open(words[words.index('--report') + 1], 'w').write(json.dumps(report))
+"""
+
+
+def reporter(folder: Path, change: str) -> Path:
+    """A mapper that writes reports of logs like `carmen_text()`."""
+    return program(folder / "reporter", REPORTER.replace("CHANGE", change))
+
+
+def written_log(folder: Path, name: str = "line", num_scans: int = NUM_SCANS) -> Path:
+    path = folder / f"{name}.log"
+    path.write_text(carmen_text(num_scans), encoding="utf-8")
+    return path
