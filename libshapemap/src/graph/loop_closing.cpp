@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <tuple>
 
 #include "loop_choice.hpp"
 #include "map_assembly.hpp"
@@ -187,13 +189,18 @@ class LoopCloser {
     close(trial);
     if (trial.value < best.value + options_.least_gain) return false;
     best = std::move(trial);
+    tried_.clear();
     return true;
   }
+
+  /// Whether a change of the best map so far has not been tried yet; what was tried is not worth another look until the
+  /// map changes.
+  bool is_new(std::size_t link, int choice, std::size_t loop) { return tried_.insert({link, choice, loop}).second; }
 
   bool try_alternatives(LoopChoice& best, std::size_t i) {
     const auto count = static_cast<int>(links_[i].alternatives.size());
     for (int choice = 0; choice < count && observer_.keep_going(); ++choice) {
-      if (choice == best.link_choice[i]) continue;
+      if (choice == best.link_choice[i] || !is_new(i, choice, clusters_.size())) continue;
       LoopChoice trial = best;
       trial.link_choice[i] = choice;
       const Pose2& a_from_b = links_[i].alternatives[static_cast<std::size_t>(choice)].a_from_b;
@@ -211,7 +218,7 @@ class LoopCloser {
     if (piece[loop.a] != piece[loop.b]) return false;
     const std::vector<std::size_t> doubtful = doubtful_links(loop.a, loop.b, kDoubtfulPerLoop);
     for (const std::size_t i : doubtful) {
-      if (best.link_choice[i] == kCut || !observer_.keep_going()) continue;
+      if (best.link_choice[i] == kCut || !observer_.keep_going() || !is_new(i, kCut, k)) continue;
       LoopChoice trial = best;
       trial.link_choice[i] = kCut;
       swing(trial, i, trial.map_from_node[loop.a] * loop.a_from_b * inverse(trial.map_from_node[loop.b]));
@@ -272,7 +279,8 @@ class LoopCloser {
   const std::vector<LoopCluster>& clusters_;
   const LoopClosingOptions& options_;
   RunObserver& observer_;
-  double doubt_below_ = 0.0;  ///< links that are less probable may be changed
+  double doubt_below_ = 0.0;                                   ///< links that are less probable may be changed
+  std::set<std::tuple<std::size_t, int, std::size_t>> tried_;  ///< with the best map so far
 };
 
 }  // namespace

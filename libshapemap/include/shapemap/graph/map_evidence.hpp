@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <memory>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -47,7 +47,7 @@ class MapEvidence {
   std::vector<std::shared_ptr<const ScanView>> views_;
   VisibilityOptions options_;
   int threads_;
-  std::map<std::pair<std::size_t, std::size_t>, Known> known_;
+  std::unordered_map<std::size_t, Known> known_;  ///< by both numbers of a pair
 };
 
 /// Pairs of nodes nearer than `within_m` to each other, the earlier one first, in order.
