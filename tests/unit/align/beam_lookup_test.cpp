@@ -47,7 +47,8 @@ TEST(BeamLookup, FindsTheBeamOfTheExactBearing) {
 TEST(BeamLookup, IsExactAtTheBordersOfBeams) {
   for (const std::size_t num_beams : {1U, 2U, 7U, 180U, 181U, 360U, 361U, 1081U}) {
     for (const double first_rad : {-kPi, -0.75 * kPi, -0.5 * kPi, 0.0, 1.0}) {
-      for (const double step_rad : {0.25 * kDegree, 0.5 * kDegree, kDegree, 2.0 * kPi / num_beams}) {
+      for (const double step_rad :
+           {0.25 * kDegree, 0.5 * kDegree, kDegree, 2.0 * kPi / static_cast<double>(num_beams)}) {
         const RangeImage image = empty_image(first_rad, step_rad, num_beams);
         for (int border = -3; border < static_cast<int>(num_beams) + 3; ++border) {
           for (const double off_rad : {-3e-8, -1e-8, -1e-10, -1e-15, 0.0, 1e-15, 1e-10, 1e-8, 3e-8}) {
