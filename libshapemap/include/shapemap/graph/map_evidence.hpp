@@ -20,6 +20,9 @@ class MapEvidence {
   MapEvidence(std::vector<std::shared_ptr<const ScanView>> views, VisibilityOptions options, int threads)
       : views_(std::move(views)), options_(options), threads_(threads) {}
 
+  /// What counts of it: pairs of scans do not tell independently of each other.
+  static constexpr double kWeight = 0.5;
+
   double of(const std::vector<Pose2>& map_from_node);
 
   /// Of the pairs of which one node is in `f` and the other in `g`, two pieces with a frame each. Estimated from a part
