@@ -4,6 +4,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace shapemap {
 namespace {
@@ -27,15 +29,42 @@ struct LineSystem {
   int partners = 0;
 };
 
-LineSystem line_system(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query, double gate_m,
-                       double cos_gate) {
+/// The nearest of points along a scan, for points along another. What was found last is near the nearest, so that the
+/// search knows from the start how far it needs to look.
+class Partners {
+ public:
+  Partners(const ScanView& reference, std::size_t num_points) : reference_(reference), last_(num_points, kNone) {}
+
+  /// Of point `i`, now at `p_m`.
+  PointIndex::Neighbour nearest(std::size_t i, const Point2& p_m, double gate_m) {
+    constexpr double kRounding = 1e-9;
+    double within_m = gate_m;
+    const std::size_t guess = last_[i] != kNone ? last_[i] : last_[i > 0 ? i - 1 : 0];
+    if (guess != kNone) {
+      const double distance_m = (reference_.points[guess].p_m - p_m).norm() * (1.0 + kRounding) + kRounding;
+      within_m = std::min(within_m, distance_m);
+    }
+    const PointIndex::Neighbour near = reference_.index.nearest(p_m, within_m);
+    if (near.distance_m <= gate_m) last_[i] = near.point;
+    return near;
+  }
+
+ private:
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  const ScanView& reference_;
+  std::vector<std::size_t> last_;  ///< per point: the one found last; for the first time, that of the point before
+};
+
+LineSystem line_system(Partners& partners, const ScanView& reference, const ScanView& query,
+                       const Pose2& ref_from_query, double gate_m, double cos_gate) {
   LineSystem system;
   const Turn turn(ref_from_query.theta_rad);
   const double trusted_m = kTrustedShareOfGate * gate_m;
   for (std::size_t i = 0; i < query.size(); ++i) {
     const Point2 turned_m = turn * query.points[i].p_m;
     const Point2 p_m = turned_m + ref_from_query.translation();
-    const PointIndex::Neighbour near = reference.index.nearest(p_m, gate_m);
+    const PointIndex::Neighbour near = partners.nearest(i, p_m, gate_m);
     if (!(near.distance_m <= gate_m)) continue;
     const Point2& tangent = reference.directions[near.point];
     if ((turn * query.directions[i]).dot(tangent) < cos_gate) continue;
@@ -67,10 +96,11 @@ LineFit fit_to_lines(const ScanView& reference, const ScanView& query, const Pos
                      const PointToLineOptions& options) {
   LineFit fit;
   fit.ref_from_query = start;
+  Partners partners(reference, query.size());
   const double cos_gate = std::cos(options.tangent_gate_rad);
   double gate_m = std::max(options.first_gate_m, options.last_gate_m);
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    const LineSystem system = line_system(reference, query, fit.ref_from_query, gate_m, cos_gate);
+    const LineSystem system = line_system(partners, reference, query, fit.ref_from_query, gate_m, cos_gate);
     note_fit(system, fit);
     if (fit.partners < kLeastPartners) break;
 
@@ -90,7 +120,9 @@ LineFit fit_at(const ScanView& reference, const ScanView& query, const Pose2& re
                const PointToLineOptions& options) {
   LineFit fit;
   fit.ref_from_query = ref_from_query;
-  note_fit(line_system(reference, query, ref_from_query, options.last_gate_m, std::cos(options.tangent_gate_rad)), fit);
+  Partners partners(reference, query.size());
+  const double cos_gate = std::cos(options.tangent_gate_rad);
+  note_fit(line_system(partners, reference, query, ref_from_query, options.last_gate_m, cos_gate), fit);
   return fit;
 }
 

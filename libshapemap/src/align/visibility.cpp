@@ -2,7 +2,10 @@
 #include "shapemap/align/visibility.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "beam_lookup.hpp"
 
 namespace shapemap {
 namespace {
@@ -21,6 +24,42 @@ struct SeenPoint {
   Point2 direction;
 };
 
+/// Some points, and one image that looks at them. What needs no beam is done for all of them at once.
+class Looks {
+ public:
+  static constexpr std::size_t kMost = 64;
+
+  void add(const Point2& p_m, const Point2& direction) { points_[size_++] = {p_m, direction}; }
+  std::size_t size() const { return size_; }
+  const SeenPoint& point(std::size_t i) const { return points_[i]; }
+
+  void turn_to(const RangeImage& image) {
+    const Turn turn(image.sensor_from_robot.theta_rad);
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Point2 in_sensor_m = turn * points_[i].p_m + image.sensor_from_robot.translation();
+      x_m_[i] = in_sensor_m.x();
+      y_m_[i] = in_sensor_m.y();
+    }
+    for (std::size_t i = 0; i < size_; ++i) {
+      range_m_[i] = std::sqrt(x_m_[i] * x_m_[i] + y_m_[i] * y_m_[i]);
+      bearing_rad_[i] = approximate_bearing_rad(x_m_[i], y_m_[i]);
+    }
+  }
+
+  double range_m(std::size_t i) const { return range_m_[i]; }
+  int beam(const RangeImage& image, std::size_t i) const {
+    return beam_near(image, bearing_rad_[i], {x_m_[i], y_m_[i]});
+  }
+
+ private:
+  std::size_t size_ = 0;
+  std::array<SeenPoint, kMost> points_;
+  std::array<double, kMost> x_m_;
+  std::array<double, kMost> y_m_;
+  std::array<double, kMost> range_m_;
+  std::array<double, kMost> bearing_rad_;
+};
+
 Seen look_along_beam(const RangeImage::Beam& beam, const SeenPoint& point, double range_m, const Limits& limits) {
   if (beam.range_m <= 0.0) return Seen::kUnclear;
   const Point2 off_m = point.p_m - beam.hit_m;
@@ -36,14 +75,12 @@ Seen look_along_beam(const RangeImage::Beam& beam, const SeenPoint& point, doubl
 
 /// By the beam towards the point and its neighbours: one of them suffices to agree, all are needed to cross. Edges of
 /// things are never certain to a beam.
-Seen look(const RangeImage& image, const SeenPoint& point, const Limits& limits) {
-  const Point2 in_sensor_m = image.sensor_from_robot * point.p_m;
-  const int middle = image.beam_at(std::atan2(in_sensor_m.y(), in_sensor_m.x()));
+Seen look(const RangeImage& image, int middle, const SeenPoint& point, double range_m, const Limits& limits) {
   if (middle < 0) return Seen::kOutside;
-  const double range_m = in_sensor_m.norm();
   const int last = static_cast<int>(image.beams.size()) - 1;
   Seen weakest = Seen::kAgree;
-  for (int k = std::max(0, middle - 1); k <= std::min(last, middle + 1); ++k) {
+  for (const int k : {middle, middle - 1, middle + 1}) {
+    if (k < 0 || k > last) continue;
     const Seen seen = look_along_beam(image.beams[static_cast<std::size_t>(k)], point, range_m, limits);
     if (seen == Seen::kAgree) return seen;
     weakest = std::min(weakest, seen);
@@ -72,13 +109,25 @@ Visibility one_way(const ScanView& seer, const ScanView& seen, const Pose2& seer
                    std::size_t stride) {
   Visibility sum;
   const Turn turn(seer_from_seen.theta_rad);
-  for (std::size_t i = stride / 2; i < seen.size(); i += stride) {
-    const SeenPoint point{turn * seen.points[i].p_m + seer_from_seen.translation(), turn * seen.directions[i]};
-    Seen best = Seen::kOutside;
-    for (const RangeImage& image : seer.images) best = std::max(best, look(image, point, limits));
-    share(sum, best) += seen.weights[i];
-    sum.cross_total += seen.cross_weights[i];
-    if (best == Seen::kAgree) sum.cross_agree += seen.cross_weights[i];
+  for (std::size_t first = stride / 2; first < seen.size(); first += Looks::kMost * stride) {
+    Looks looks;
+    for (std::size_t i = first; i < seen.size() && looks.size() < Looks::kMost; i += stride) {
+      looks.add(turn * seen.points[i].p_m + seer_from_seen.translation(), turn * seen.directions[i]);
+    }
+    std::array<Seen, Looks::kMost> best;
+    best.fill(Seen::kOutside);
+    for (const RangeImage& image : seer.images) {
+      looks.turn_to(image);
+      for (std::size_t k = 0; k < looks.size(); ++k) {
+        best[k] = std::max(best[k], look(image, looks.beam(image, k), looks.point(k), looks.range_m(k), limits));
+      }
+    }
+    for (std::size_t k = 0; k < looks.size(); ++k) {
+      const std::size_t i = first + k * stride;
+      share(sum, best[k]) += seen.weights[i];
+      sum.cross_total += seen.cross_weights[i];
+      if (best[k] == Seen::kAgree) sum.cross_agree += seen.cross_weights[i];
+    }
   }
   return sum;
 }

@@ -23,9 +23,6 @@ constexpr double kPriorOfLinks = 2.0;
 /// The chain took its neighbours into account as well.
 constexpr double kAgainstChain = 3.0;
 
-/// Pairs of scans do not tell independently of each other.
-constexpr double kEvidenceWeight = 0.5;
-
 bool agrees(const Pose2& off) { return off.translation().norm() < kAgrees_m && std::abs(off.theta_rad) < kAgrees_rad; }
 
 /// The best member of each node.
@@ -57,12 +54,17 @@ LoopProblem::LoopProblem(const std::vector<std::shared_ptr<const ScanView>>& vie
   for (const LoopCluster& cluster : clusters) loop_constraints_.push_back(constraints_of(cluster));
 }
 
-LoopChoice LoopProblem::chain_alone() {
+LoopChoice LoopProblem::undecided(std::vector<Pose2> map_from_node) const {
   LoopChoice choice;
   choice.link_choice.assign(links_.size(), kCut);
   choice.accepted.assign(clusters_.size(), 0);
   choice.refused_off.assign(clusters_.size(), Pose2{kApart_m, kApart_m, 0.0});
-  choice.map_from_node.resize(num_nodes_);
+  choice.map_from_node = std::move(map_from_node);
+  return choice;
+}
+
+LoopChoice LoopProblem::chain_alone() {
+  LoopChoice choice = undecided(std::vector<Pose2>(num_nodes_));
   double next_piece_m = 0.0;
   for (std::size_t i = 0; i < links_.size(); ++i) {
     if (links_[i].exists()) {
@@ -78,11 +80,7 @@ LoopChoice LoopProblem::chain_alone() {
 }
 
 LoopChoice LoopProblem::of_map(std::vector<Pose2> map_from_node) {
-  LoopChoice choice;
-  choice.link_choice.assign(links_.size(), kCut);
-  choice.accepted.assign(clusters_.size(), 0);
-  choice.refused_off.assign(clusters_.size(), Pose2{kApart_m, kApart_m, 0.0});
-  choice.map_from_node = std::move(map_from_node);
+  LoopChoice choice = undecided(std::move(map_from_node));
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const Pose2 taken = inverse(choice.map_from_node[i]) * choice.map_from_node[i + 1];
     for (std::size_t k = 0; k < links_[i].alternatives.size() && choice.link_choice[i] == kCut; ++k) {
@@ -147,7 +145,8 @@ double LoopProblem::cost_of_links(const LoopChoice& choice) const {
 }
 
 void LoopProblem::rate(LoopChoice& choice) {
-  choice.value = kEvidenceWeight * evidence_.of(choice.map_from_node) - 0.5 * choice.chi_square - cost_of_links(choice);
+  choice.value =
+      MapEvidence::kWeight * evidence_.of(choice.map_from_node) - 0.5 * choice.chi_square - cost_of_links(choice);
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
     if (choice.accepted[k]) choice.value += worth(k);
   }

@@ -56,6 +56,8 @@ class LoopProblem {
   std::size_t num_nodes() const { return num_nodes_; }
 
  private:
+  /// All links cut, no loop closed.
+  LoopChoice undecided(std::vector<Pose2> map_from_node) const;
   double cost_of_links(const LoopChoice& choice) const;
 
   const std::vector<ChainLink>& links_;

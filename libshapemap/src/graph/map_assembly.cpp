@@ -25,9 +25,6 @@ constexpr double kPrior = 2.0;
 constexpr double kMostPerNode = 6.0;
 constexpr double kLoss = 2.0;
 
-/// Pairs of scans do not tell independently of each other.
-constexpr double kEvidenceWeight = 0.5;
-
 /// Against each length of a usual step that one is longer, and against being elsewhere than the chain's next: of places
 /// of which nothing is known, some look alike.
 constexpr double kStepPenalty = 4.0;
@@ -149,7 +146,8 @@ class Assembly {
     std::stable_sort(ways.begin(), ways.end(), better);
     ways.resize(std::min(ways.size(), kWaysTried));
     for (Way& way : ways) {
-      way.gain += kEvidenceWeight * evidence_.between(pose_, nodes_[pair.first], nodes_[pair.second], way.f_from_g);
+      way.gain +=
+          MapEvidence::kWeight * evidence_.between(pose_, nodes_[pair.first], nodes_[pair.second], way.f_from_g);
     }
     std::stable_sort(ways.begin(), ways.end(), better);
     const double second = ways.size() > 1 ? std::max(0.0, ways[1].gain) : 0.0;

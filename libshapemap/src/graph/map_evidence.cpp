@@ -65,9 +65,10 @@ double MapEvidence::between(const std::vector<Pose2>& pose_in_piece, const std::
 
 double MapEvidence::of_pairs(const std::vector<RelativePose>& pairs) {
   std::vector<Known*> known;
+  known.reserve(pairs.size());
   std::vector<std::size_t> stale;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto [found, is_new] = known_.try_emplace({pairs[i].a, pairs[i].b});
+    const auto [found, is_new] = known_.try_emplace(pairs[i].a * views_.size() + pairs[i].b);
     known.push_back(&found->second);
     if (is_new || moved(found->second.a_from_b, pairs[i].a_from_b)) stale.push_back(i);
   }

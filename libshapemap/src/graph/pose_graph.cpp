@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
+#include <map>
 #include <stdexcept>
 
 namespace shapemap {
@@ -94,13 +96,19 @@ PoseGraphSolution solve_pose_graph(const std::vector<Pose2>& map_from_node,
     nodes.push_back({pose.x_m, pose.y_m, pose.theta_rad});
   }
 
-  ceres::Problem problem;
+  // The problem owns neither, which would take it longer than to solve a small graph.
+  std::deque<RelativePoseError> errors;
+  std::map<double, ceres::CauchyLoss> losses;  // by scale
+  ceres::Problem::Options ownership;
+  ownership.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(ownership);
   for (const PoseConstraint& constraint : constraints) {
     require_finite(constraint.a_from_b);
-    ceres::LossFunction* loss =
-        constraint.loss_scale > 0.0 ? new ceres::CauchyLoss(constraint.loss_scale) : nullptr;  // the problem owns both
-    problem.AddResidualBlock(new RelativePoseError(constraint), loss, nodes[constraint.a].data(),
-                             nodes[constraint.b].data());
+    errors.emplace_back(constraint);
+    const double scale = constraint.loss_scale;
+    ceres::LossFunction* loss = scale > 0.0 ? &losses.try_emplace(scale, scale).first->second : nullptr;
+    problem.AddResidualBlock(&errors.back(), loss, nodes[constraint.a].data(), nodes[constraint.b].data());
   }
   for (std::size_t node = 0; node < nodes.size(); ++node) {
     if (part[node] == node && problem.HasParameterBlock(nodes[node].data())) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <thread>
 
 #include "shapemap/graph/map_evidence.hpp"
 #include "support/matchers.hpp"
@@ -275,6 +276,25 @@ TEST(CloseLoops, IsTheSameToTheBitForAnyNumberOfThreads) {
   const Ring ring;
   const std::vector<LoopCluster> clusters{ring.wrong(14.0), ring.again(12.0)};
   expect_same_bits(ring.closed(clusters, 3), ring.closed(clusters, 1));
+}
+
+struct AskedByOne : RunObserver {
+  bool keep_going() override {
+    ++asked;
+    is_same = is_same && std::this_thread::get_id() == owner;
+    return true;
+  }
+  std::thread::id owner = std::this_thread::get_id();
+  std::size_t asked = 0;
+  bool is_same = true;
+};
+
+TEST(CloseLoops, AsksTheObserverFromOneThread) {
+  const Ring ring;
+  AskedByOne observer;
+  ring.closed({ring.wrong(14.0), ring.again(12.0)}, observer, 3);
+  EXPECT_GT(observer.asked, 0U);
+  EXPECT_TRUE(observer.is_same);
 }
 
 TEST(CloseLoops, OfOneNodeIsThatNode) {

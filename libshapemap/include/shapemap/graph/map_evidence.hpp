@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
 #include <memory>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -19,6 +19,9 @@ class MapEvidence {
  public:
   MapEvidence(std::vector<std::shared_ptr<const ScanView>> views, VisibilityOptions options, int threads)
       : views_(std::move(views)), options_(options), threads_(threads) {}
+
+  /// What counts of it: pairs of scans do not tell independently of each other.
+  static constexpr double kWeight = 0.5;
 
   double of(const std::vector<Pose2>& map_from_node);
 
@@ -47,7 +50,7 @@ class MapEvidence {
   std::vector<std::shared_ptr<const ScanView>> views_;
   VisibilityOptions options_;
   int threads_;
-  std::map<std::pair<std::size_t, std::size_t>, Known> known_;
+  std::unordered_map<std::size_t, Known> known_;  ///< by both numbers of a pair
 };
 
 /// Pairs of nodes nearer than `within_m` to each other, the earlier one first, in order.
