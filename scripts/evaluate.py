@@ -23,7 +23,7 @@ from tqdm import tqdm
 from evaluate_arena import parse_seeds
 from evaluation.datasets import PROJECT, DatasetError, LogSpec, read_datasets, select
 from evaluation.logs import EvaluationLog, load
-from evaluation.methods import ALL, CEILING, Programs, with_feeds
+from evaluation.methods import ALL, CEILING, Method, Programs, with_feeds
 from evaluation.results import assemble, save
 from evaluation.runs import Job
 from evaluation.schedule import Schedule
@@ -103,13 +103,17 @@ def logs_at_hand(arguments: argparse.Namespace) -> tuple[list[EvaluationLog], li
     return logs, skipped
 
 
+def can_run(log: EvaluationLog, method: Method) -> bool:
+    return method.is_ours or log.spec.baselines
+
+
 def jobs_for(logs: Sequence[EvaluationLog], arguments: argparse.Namespace) -> list[Job]:
     programs = programs_of(arguments)
     return [
         Job(log, method, programs, arguments.timeout_s, arguments.out)
         for log in logs
         for method in arguments.chosen
-        if method.name != CEILING or log.reference is not None or log.relations
+        if (log.reference is not None or log.relations if method.name == CEILING else can_run(log, method))
     ]
 
 

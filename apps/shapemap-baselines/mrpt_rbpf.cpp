@@ -12,9 +12,12 @@
 #include <mrpt/slam/CMetricMapBuilderRBPF.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "io/rawlog.hpp"
+#include "motions.hpp"
+#include "shapemap/align/confidence.hpp"
 #include "shapemap/core/errors.hpp"
 
 namespace shapemap::baselines {
@@ -110,9 +113,16 @@ class MrptRbpf : public SlamMethod {
 
   void add(const Position& position, const Motion& motion) override {
     const Pose2 way = entries_.empty() ? Pose2{} : motion.previous_from_this;
-    check_size(way);
+    since_update_ = entries_.empty() ? Motion{} : compose(since_update_, motion);
+    if (!entries_.empty() && is_small(since_update_)) {
+      since_entry_ = since_entry_ * way;
+      entries_.push_back({path_length() - 1, since_entry_});
+      return;
+    }
+    check_size(since_update_.previous_from_this);
     mrpt::obs::CActionCollection actions;
-    actions.insert(action_of(entries_.empty() ? Motion{} : motion));
+    actions.insert(action_of(since_update_));
+    since_update_ = {};
     mrpt::obs::CSensoryFrame frame = frame_of(position);
     const std::size_t length_before = path_length();
     filter_.processActionObservation(actions, frame);
@@ -138,6 +148,12 @@ class MrptRbpf : public SlamMethod {
     std::size_t index = 0;
     Pose2 entry_from_this;
   };
+
+  bool is_small(const Motion& motion) const {
+    const Pose2& pose = motion.previous_from_this;
+    return pose.translation().norm() < options_.update_m && std::abs(pose.theta_rad) < options_.update_rad &&
+           worst_deviation_m(motion.covariance) < 0.5 * options_.update_m;
+  }
 
   std::size_t path_length() const { return filter_.mapPDF.m_particles.front().d->robotPath.size(); }
 
@@ -165,6 +181,7 @@ class MrptRbpf : public SlamMethod {
   Filter filter_;
   std::vector<Entry> entries_;
   Pose2 since_entry_;
+  Motion since_update_;
 };
 
 }  // namespace

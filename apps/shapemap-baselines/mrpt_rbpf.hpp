@@ -13,6 +13,8 @@ struct RbpfOptions {
   int samples = 400;
   double cell_m = 0.07;
   double longest_beam_m = 35.0;
+  double update_m = 0.25;
+  double update_rad = 10 * kDegree;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -20,11 +22,17 @@ struct RbpfOptions {
     visit(Field{"samples", "motions that are tried for each particle", 1, 1000000}, self.samples);
     visit(Field{"rbpf-cell-m", "side of a cell of the particles' maps [m]", 0.01, 1}, self.cell_m);
     visit(Field{"rbpf-longest-beam-m", "longer beams enter no map [m]", 1, 1000}, self.longest_beam_m);
+    visit(Field{"rbpf-update-m",
+                "scans that odometry puts nearer to the last one used, for certain, are passed over [m]", 0, 100},
+          self.update_m);
+    visit(Field{"rbpf-update-deg", "unless they are turned by more [deg]", 0, 180, kDegree}, self.update_rad);
   }
 };
 
 /// MRPT's CMetricMapBuilderRBPF: particles that are whole trajectories with a grid map each; of each particle's
 /// possible motions those are likely to be taken that go with the scan. The motions' covariances are its motion model.
+/// Scans of nearly the same place are passed over where motions are certain: many in a row make it too sure of itself,
+/// and take long. A position that was passed over is where its motion leads from the last that was not.
 /// MRPT's random numbers, which are global, begin anew with `seed`.
 std::unique_ptr<SlamMethod> make_mrpt_rbpf(const RbpfOptions& options, int seed);
 

@@ -33,7 +33,7 @@ KEYS = (
         "relations",
         "keeps_heading",
     ),
-    *("angle_step_deg", "every", "first", *ARENA_OPTIONS),
+    *("angle_step_deg", "every", "first", "baselines", *ARENA_OPTIONS),
 )
 
 
@@ -57,6 +57,7 @@ class LogSpec:
     angle_step_deg: float | None = None
     every: int = 1
     first: int = 0
+    baselines: bool = True
     arena: dict[str, float] = field(default_factory=dict)
 
     @property
@@ -108,7 +109,7 @@ def _check(entry: dict[str, Any], where: str) -> None:
 
 def _expand(entry: dict[str, Any], datasets: Path | None, seeds: list[int] | None) -> list[LogSpec]:
     common: dict[str, Any] = {key: entry[key] for key in ("sensor", "reference")}
-    common |= {key: entry[key] for key in ("keeps_heading", "angle_step_deg", "every", "first") if key in entry}
+    common |= {key: entry[key] for key in ("keeps_heading", "angle_step_deg", "every", "first", "baselines") if key in entry}
     name = entry["name"]
     if "simulate" in entry:
         arena = {key: entry[key] for key in ARENA_OPTIONS if key in entry}

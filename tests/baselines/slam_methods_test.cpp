@@ -34,6 +34,7 @@ RbpfOptions small_filter() {
   options.particles = 6;
   options.samples = 40;
   options.longest_beam_m = 10.0;
+  options.update_m = 0.0;
   return options;
 }
 
@@ -136,6 +137,30 @@ TEST(MrptRbpf, AddsTheMotionsOfBlindScansToTheNext) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     EXPECT_THAT(truth[0] * found[i], shapemap::test::IsNearPose(truth[i], 0.02, 1 * kDegree)) << i;
   }
+}
+
+/// Where odometry is sure and the robot hardly moves, odometry is the answer; it then goes on from there.
+TEST(MrptRbpf, PassesOverScansOfTheSamePlace) {
+  const std::vector<Pose2> truth = test::walk(9);
+  const std::vector<Position> scans = test::scans_of(truth);
+  RbpfOptions options = small_filter();
+  options.update_m = 0.25;
+  options.update_rad = kPi;
+  std::vector<Motion> motions = motions_of(truth, test::covariance(0.02, 0.01));
+  for (Motion& motion : motions) motion.previous_from_this = motion.previous_from_this * Pose2{0.01, 0.02, 0.0};
+  const std::vector<Pose2> found = placed(*make_mrpt_rbpf(options, 1), scans, motions);
+  ASSERT_EQ(found.size(), truth.size());
+  std::size_t num_passed = 0;
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    const Pose2 off = inverse(motions[i].previous_from_this) * inverse(found[i - 1]) * found[i];
+    if (off.translation().norm() < 1e-9 && std::abs(off.theta_rad) < 1e-9) ++num_passed;
+  }
+  EXPECT_GT(num_passed, 2U);
+  EXPECT_LT(num_passed, found.size() - 2);
+  const std::vector<Motion> unknown(truth.size(), test::nothing_known());
+  const std::vector<Pose2> all = placed(*make_mrpt_rbpf(options, 1), scans, unknown);
+  const std::vector<Pose2> same = placed(*make_mrpt_rbpf(small_filter(), 1), scans, unknown);
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_THAT(all[i], shapemap::test::HasSameBits(same[i]));
 }
 
 TEST(MrptRbpf, StopsBeforeMemoryEnds) {

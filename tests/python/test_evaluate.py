@@ -72,6 +72,18 @@ def test_all_methods_on_all_that_is_there(folder: Path, capfd: pytest.CaptureFix
     assert "| right pairs | line | 5 pairs | 0.0 % | 80.0 % | +80.0 % |" in text, "mrpt-icp with our poses"
 
 
+def test_no_baseline_is_run_where_the_data_set_wants_none(folder: Path) -> None:
+    text = DATASETS.replace('path = "line.log"', 'path = "line.log"\nbaselines = false', 1)
+    (folder / "datasets.toml").write_text(text, encoding="utf-8")
+    run(folder, "--only", "line,bare", "--methods", "robust,ceiling,vasco,vasco+robust")
+    runs = load_results(folder / "out/results.json")["runs"]
+    methods = {(run["log"], run["method"]) for run in runs}
+    assert methods == {
+        *(("line", "robust"), ("line", "ceiling")),
+        *(("bare", "robust"), ("bare", "vasco"), ("bare", "vasco+robust")),
+    }
+
+
 def test_the_page_needs_no_network_and_has_its_pictures(folder: Path) -> None:
     run(folder, "--methods", "robust,ceiling")
     page = (folder / "out/report.html").read_text(encoding="utf-8")

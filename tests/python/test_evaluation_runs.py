@@ -16,7 +16,7 @@ import pytest
 
 from evaluation.methods import Programs
 from evaluation.programs import Failure, run_measured
-from evaluation.runs import execute, finished
+from evaluation.runs import execute, file_sha256, finished
 from evaluation.schedule import Schedule
 from evaluation.trajectories import as_lists, from_lists, read_trajectory
 from evaluation_support import BASELINES, NUM_SCANS, job, line_log, mapper, program
@@ -146,6 +146,22 @@ def test_what_is_done_is_kept_unless_anything_changed(tmp_path: Path, programs: 
         assert finished(changed) is None
     jobs[0].result_path.write_text('{"key": "cut', encoding="utf-8")
     assert finished(jobs[0]) is None
+
+
+def test_a_baseline_is_run_again_when_what_it_depends_on_changes(tmp_path: Path, programs: Programs) -> None:
+    log = line_log(tmp_path)
+    robust, fed, alone = (job(tmp_path, name, log, programs) for name in ("robust", "mrpt-icp+robust", "mrpt-icp"))
+    run_all([robust])
+    keys = [fed.key(), alone.key()]
+    other = replace(programs, arguments=("--threads", "2"))
+    assert [replace(one, programs=other).key() for one in (fed, alone)] == keys, "the poses are the same"
+    assert replace(robust, programs=other).key() != robust.key()
+    poses = robust.folder / "out.tum"
+    file_sha256.cache_clear()  # as in another process
+    poses.write_text(poses.read_text(encoding="utf-8") + "9 0 0 0 0 0 0 1\n", encoding="utf-8")
+    assert fed.key() != keys[0]
+    assert alone.key() == keys[1]
+    assert replace(alone, programs=replace(programs, baseline_arguments=("--seed", "2"))).key() != keys[1]
 
 
 def test_ctrl_c_leaves_what_is_done_and_ends_the_programs(tmp_path: Path, programs: Programs) -> None:
