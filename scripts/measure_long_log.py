@@ -17,7 +17,17 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from evaluation.growth import Growth, first_and_last, memory_line, prefixes, stretches, table, wrong_places
+from evaluation.growth import (
+    Growth,
+    first_and_last,
+    memory_line,
+    milestone_table,
+    prefixes,
+    quarters,
+    stretches,
+    table,
+    wrong_places,
+)
 from evaluation.mapping import Mapper, absolute_errors_m, placed_poses, root_mean_square
 from evaluation.programs import Failure
 from evaluation.sampling import Sampler
@@ -31,11 +41,11 @@ from simulate_arena import number
 EXAMPLE = """The office is 40 x 25 m, with rooms on both sides of a corridor all around; each lap is somewhat different,
 the robot goes into some of the rooms and turns back at times. The laser has 181 beams and noise; there is no odometry.
 
-CPU time per scan of a part of the log is the difference between two runs, on the log to its beginning and to its end:
-measure on an idle machine.
+What a part of the log takes to read is told of the longest run, and of all of it, with the final solving, by the
+differences between runs: measure on an idle machine.
 
 example:
-  scripts/measure_long_log.py --scans 20000 --json results/long.json
+  scripts/measure_long_log.py --scans 20000 --prefixes 20000 --json results/long.json
   scripts/measure_long_log.py --scans 4000 --step-m 0.05 --last 500 --log results/walk.nist
 
 Exit status: 0 all runs gave a map, 1 some did not, 2 wrong usage."""
@@ -109,6 +119,7 @@ def measured(simulation: Simulation, mapper: Mapper) -> Growth:
         worst_m=float(errors_m.max()) if len(errors_m) else math.nan,
         far_off=stretches(dict(zip(sorted(placed_poses(report)), errors_m.tolist()))),
         stages_s=report["seconds"],
+        milestones=report.get("milestones", []),
         samples=sampler.samples,
     )
 
@@ -143,6 +154,8 @@ def main(argv: list[str] | None = None) -> int:
         table(runs),
         "\n".join(filter(None, map(wrong_places, runs))),
         first_and_last(runs, arguments.last),
+        milestone_table(runs[-1]),
+        quarters(runs[-1]),
         memory_line(runs[-1]),
     ]
     print("\n\n".join(line for line in lines if line))

@@ -4,8 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "costs.hpp"
 #include "progress_bar.hpp"
 #include "shapemap/core/observer.hpp"
+#include "shapemap/io/report.hpp"
 #include "signals.hpp"
 
 namespace shapemap::cli {
@@ -15,9 +17,16 @@ class ConsoleObserver : public RunObserver {
  public:
   explicit ConsoleObserver(bool show_progress, const char* what = "positions") : progress_(show_progress, what) {}
 
-  void on_progress(std::size_t done, std::size_t total) override { progress_.update(done, total); }
+  void on_progress(std::size_t done, std::size_t total) override {
+    progress_.update(done, total);
+    if (reads_log_ && done >= next_milestone_) {
+      milestones_.push_back({done, stopwatch_.seconds(), cpu_seconds(), peak_memory_mib()});
+      next_milestone_ = done - done % kMilestone + kMilestone;
+    }
+  }
   void on_warning(std::string_view message) override { warnings_.emplace_back(message); }
   void on_stage(std::string_view stage) override {
+    reads_log_ = stage == "chain";
     const std::string asked_to_stop = interrupted() ? "interrupted; still: " : "";
     progress_.start(asked_to_stop + std::string(stage), stage == "chain" ? "positions" : "pairs");
   }
@@ -28,10 +37,18 @@ class ConsoleObserver : public RunObserver {
 
   void finish() { progress_.clear(); }
   const std::vector<std::string>& warnings() const { return warnings_; }
+  /// Each thousand positions that were read, about.
+  const std::vector<Milestone>& milestones() const { return milestones_; }
 
  private:
+  static constexpr std::size_t kMilestone = 1000;
+
   ProgressBar progress_;
   std::vector<std::string> warnings_;
+  Stopwatch stopwatch_;
+  bool reads_log_ = false;
+  std::size_t next_milestone_ = kMilestone;
+  std::vector<Milestone> milestones_;
 };
 
 }  // namespace shapemap::cli

@@ -27,7 +27,7 @@ void require_a_map(const MapArguments& arguments, const MapResult& result) {
 }
 
 MapResult map_with_progress(const LogSet& logs, const MapArguments& arguments, TraceSink* sink,
-                            std::vector<std::string>& warnings) {
+                            std::vector<std::string>& warnings, RunCosts& costs) {
   ConsoleObserver observer(arguments.verbosity != Verbosity::kQuiet);
   const std::unique_ptr<AlignmentStoreFile> state = open_state(arguments, logs.log, warnings);
   print_resumed(arguments, state.get());
@@ -36,20 +36,21 @@ MapResult map_with_progress(const LogSet& logs, const MapArguments& arguments, T
   if (interrupted() && result.placed().empty()) throw Interrupted();
   if (result.interrupted) print_interrupted(logs, result);
   warnings.insert(warnings.end(), observer.warnings().begin(), observer.warnings().end());
+  costs.milestones = observer.milestones();
   return result;
 }
 
 /// Maps the logs, and writes the trace meanwhile if one is wanted.
 MapResult map_and_trace(const LogSet& logs, const MapArguments& arguments, std::vector<std::string>& warnings,
-                        OutputSet& outputs) {
-  if (arguments.trace_path.empty()) return map_with_progress(logs, arguments, nullptr, warnings);
+                        RunCosts& costs, OutputSet& outputs) {
+  if (arguments.trace_path.empty()) return map_with_progress(logs, arguments, nullptr, warnings, costs);
   const MapSettings& settings = arguments.settings;
   std::vector<std::string> paths;
   for (const LogSource& log : arguments.logs) paths.push_back(log.path);
   MapResult result;
   outputs.add(arguments.trace_path, [&](const std::string& path) {
     TraceFile trace(path, {paths, logs.log, settings.mapping, settings.reading, settings.selection});
-    result = map_with_progress(logs, arguments, &trace, warnings);
+    result = map_with_progress(logs, arguments, &trace, warnings, costs);
     trace.commit(result);
   });
   return result;
@@ -79,7 +80,7 @@ int run_map(const MapArguments& arguments) {
   set_interrupt_policy(OnInterrupt::kFinishStep);
   const Stopwatch mapping;
   OutputSet outputs;
-  const MapResult result = map_and_trace(logs, arguments, warnings, outputs);
+  const MapResult result = map_and_trace(logs, arguments, warnings, costs, outputs);
   costs.map_s = mapping.seconds();
   require_a_map(arguments, result);
 

@@ -109,7 +109,8 @@ def _check(entry: dict[str, Any], where: str) -> None:
 
 def _expand(entry: dict[str, Any], datasets: Path | None, seeds: list[int] | None) -> list[LogSpec]:
     common: dict[str, Any] = {key: entry[key] for key in ("sensor", "reference")}
-    common |= {key: entry[key] for key in ("keeps_heading", "angle_step_deg", "every", "first", "baselines") if key in entry}
+    optional = ("keeps_heading", "angle_step_deg", "every", "first", "baselines")
+    common |= {key: entry[key] for key in optional if key in entry}
     name = entry["name"]
     if "simulate" in entry:
         arena = {key: entry[key] for key in ARENA_OPTIONS if key in entry}

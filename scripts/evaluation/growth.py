@@ -36,6 +36,7 @@ class Growth:
     worst_m: float = float("nan")
     far_off: list[Stretch] = field(default_factory=list)
     stages_s: dict[str, float] = field(default_factory=dict)
+    milestones: list[dict[str, float]] = field(default_factory=list, repr=False)
     samples: list[Sample] = field(default_factory=list, repr=False)
 
 
@@ -104,6 +105,31 @@ def first_and_last(runs: Sequence[Growth], last: int) -> str:
         f"first {last} scans: {first_ms:.1f} ms of CPU time each; last {last} of {whole}: {last_ms:.1f} ms, "
         f"{last_ms / first_ms:.2f} times as much; memory: {grown_mib:+.0f} MiB from {last} scans to {whole}"
     )
+
+
+def milestone_table(run: Growth) -> str:
+    """What reading the log took, about each thousand scans: the final solving is not in it. Empty for a short log."""
+    if not run.milestones:
+        return ""
+    lines = ["| scans read | CPU per scan since the line before | memory |", "|---|---|---|"]
+    num, cpu_s = 0.0, 0.0
+    for milestone in run.milestones:
+        per_scan_ms = 1000.0 * (milestone["cpu_s"] - cpu_s) / (milestone["num_positions"] - num)
+        num, cpu_s = milestone["num_positions"], milestone["cpu_s"]
+        lines.append(f"| {num:.0f} | {per_scan_ms:.1f} ms | {milestone['peak_memory_mib']:.0f} MiB |")
+    return "\n".join(lines)
+
+
+def quarters(run: Growth) -> str:
+    """One line: CPU time per scan of each quarter of the reading; empty without four milestones."""
+    marks = [{"num_positions": 0.0, "cpu_s": 0.0}, *run.milestones]
+    if len(marks) < 5:
+        return ""
+    at = [marks[round(k * (len(marks) - 1) / 4)] for k in range(5)]
+    costs = [
+        1000.0 * (b["cpu_s"] - a["cpu_s"]) / (b["num_positions"] - a["num_positions"]) for a, b in zip(at, at[1:])
+    ]
+    return "CPU time per scan in the four quarters of the log: " + ", ".join(f"{cost:.1f}" for cost in costs) + " ms"
 
 
 def memory_line(run: Growth, parts: int = 10) -> str:

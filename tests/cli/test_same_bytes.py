@@ -20,7 +20,7 @@ def outputs_of(run, tmp_path):
         result = run(log, *flags, "--report", f"{folder}/report.json", "--draw-path", *arguments)
         assert result.returncode == 0, result.stderr
         report = json.loads((tmp_path / folder / "report.json").read_text())
-        for key in ("seconds", "peak_memory_mib"):
+        for key in ("seconds", "milestones", "peak_memory_mib"):
             del report[key]
         del report["logs"][0]["path"], report["options"]["threads"]
         return [(tmp_path / folder / name).read_bytes() for name in NAMES], report

@@ -11,7 +11,18 @@ import numpy as np
 import pytest
 
 import measure_long_log
-from evaluation.growth import Growth, Stretch, first_and_last, memory_line, prefixes, stretches, table, wrong_places
+from evaluation.growth import (
+    Growth,
+    Stretch,
+    first_and_last,
+    memory_line,
+    milestone_table,
+    prefixes,
+    quarters,
+    stretches,
+    table,
+    wrong_places,
+)
 from evaluation.programs import run_measured
 from evaluation.sampling import Sample, Sampler
 from evaluation_support import program, reporter
@@ -116,6 +127,17 @@ def test_what_is_far_off_is_told_in_stretches() -> None:
     assert found == [Stretch(3, 5, 2.0), Stretch(7, 7, 9.0)]
     assert wrong_places(Growth(8, far_off=found)).splitlines()[0] == "of 8 scans, 3 to 5 are up to 2.00 m off"
     assert wrong_places(Growth(8)) == ""
+
+
+def test_what_reading_took_is_told_for_each_part_of_the_log() -> None:
+    marks = [
+        {"num_positions": 1000.0 * k, "wall_s": 0.0, "cpu_s": cpu_s, "peak_memory_mib": 50.0 + k}
+        for k, cpu_s in enumerate((10.0, 30.0, 50.0, 90.0), 1)
+    ]
+    run = Growth(4200, milestones=marks)
+    assert milestone_table(run).splitlines()[2:4] == ["| 1000 | 10.0 ms | 51 MiB |", "| 2000 | 20.0 ms | 52 MiB |"]
+    assert quarters(run).endswith(": 10.0, 20.0, 20.0, 40.0 ms")
+    assert quarters(Growth(9, milestones=marks[:3])) == milestone_table(Growth(9)) == ""
 
 
 def test_memory_over_time_is_at_equal_parts_of_it() -> None:

@@ -181,6 +181,17 @@ Json timings_json(const RunReport& report) {
           {"wall", costs.wall_s},   {"cpu", costs.cpu_s}};
 }
 
+Json milestones_json(const RunCosts& costs) {
+  Json list = Json::array();
+  for (const Milestone& milestone : costs.milestones) {
+    list.push_back({{"num_positions", milestone.num_positions},
+                    {"wall_s", milestone.wall_s},
+                    {"cpu_s", milestone.cpu_s},
+                    {"peak_memory_mib", milestone.peak_memory_mib}});
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string json_report(const RunReport& report) {
@@ -199,6 +210,7 @@ std::string json_report(const RunReport& report) {
                     {"positions", positions_json(report)},
                     {"warnings", report.warnings},
                     {"seconds", timings_json(report)},
+                    {"milestones", milestones_json(report.costs)},
                     {"peak_memory_mib", report.costs.peak_memory_mib}};
   // Names in a log may hold any bytes; those that are no UTF-8 are replaced rather than fatal.
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

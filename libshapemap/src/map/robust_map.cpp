@@ -111,13 +111,12 @@ class Reading {
         growth_(log, options, observer, sink, store, result) {}
 
   void run() {
-    const auto settle_at = static_cast<std::size_t>(options_.keyframes.settle_at);
-    const bool settles = options_.loops.close_loops && settle_at > 0;
-    std::size_t most = settles ? std::max(settle_at, 4 * kKeyframesInUse) : std::numeric_limits<std::size_t>::max();
+    const auto settle_at = std::max(static_cast<std::size_t>(options_.keyframes.settle_at), 4 * kKeyframesInUse);
+    const bool settles = options_.loops.close_loops && options_.keyframes.settle_at > 0;
+    std::size_t most = settles ? settle_at : std::numeric_limits<std::size_t>::max();
     while (growth_.extend(most)) {
       settle();
-      const std::size_t kept = chain().keyframes.size();
-      most = kept + std::max(most, kept) / 2;
+      most = std::max(settle_at, 2 * chain().keyframes.size());
     }
   }
 

@@ -39,8 +39,15 @@ class Report : public testing::Test {
     selection_.every = 2;
   }
   Json parsed() const {
-    return Json::parse(json_report(
-        {logs_, log_, result_, mapping_, reading_, selection_, grid_, {"odd"}, {1.0, 2.0, 3.0, 6.5, 6.0, 50.0}}));
+    return Json::parse(json_report({logs_,
+                                    log_,
+                                    result_,
+                                    mapping_,
+                                    reading_,
+                                    selection_,
+                                    grid_,
+                                    {"odd"},
+                                    {1.0, 2.0, 3.0, 6.5, 6.0, 50.0, {{1008, 4.0, 7.5, 40.0}}}}));
   }
 
   std::vector<LogFile> logs_{{"run\xFF.log", "carmen"}};
@@ -191,6 +198,11 @@ TEST_F(Report, NamesVersionsCostsAndTheLogWhateverItsBytes) {
   }
   EXPECT_EQ(report["seconds"]["wall"], 6.5);
   EXPECT_EQ(report["peak_memory_mib"], 50.0);
+  ASSERT_EQ(report["milestones"].size(), 1U);
+  EXPECT_EQ(report["milestones"][0]["num_positions"], 1008);
+  EXPECT_EQ(report["milestones"][0]["wall_s"], 4.0);
+  EXPECT_EQ(report["milestones"][0]["cpu_s"], 7.5);
+  EXPECT_EQ(report["milestones"][0]["peak_memory_mib"], 40.0);
   EXPECT_EQ(report["warnings"][0], "odd");
   EXPECT_EQ(report["logs"][0]["path"], "run\xEF\xBF\xBD.log") << "bytes that are no UTF-8 are replaced";
 }

@@ -27,7 +27,7 @@ MappingOptions quick() {
 }
 
 struct Laps {
-  explicit Laps(std::size_t count) : truth(test::ring_walk(count, 2)) {
+  explicit Laps(std::size_t count) : truth(test::ring_walk(count, 4)) {
     std::mt19937 rng(7);
     for (const Pose2& pose : truth) {
       log.positions.push_back(test::scan_of(test::ring_world(1), pose, test::full_circle(), rng));
@@ -117,9 +117,8 @@ TEST(StandIns, AreNotForKeyframesInDoubt) {
   ASSERT_NE(first, all.end());
   const auto b = static_cast<std::size_t>(first - all.begin());
   known.map.held_by_loops[b] = false;
-  known.chain.links[b].hypotheses[0].visibility.crossed = 1e6;  // improbable
-  known.chain.links[b].hypotheses[0].score = -5.0;
-  ASSERT_LT(link_probability(known.chain.links[b], {}), 0.5);
+  known.chain.links[b].choice.margin = 0.01;  // another place fits as well
+  ASSERT_LT(link_probability(known.chain.links[b], {}), 0.6);
   EXPECT_FALSE(find_stand_ins(laps.log, known.chain, known.map, quick())[b]);
   known.map.held_by_loops[b] = true;
   EXPECT_TRUE(find_stand_ins(laps.log, known.chain, known.map, quick())[b]);
@@ -167,7 +166,7 @@ TEST(RetiredKeyframes, LeaveAChainThatSaysWhatTheMapDid) {
     const bool is_mine = scan.position_index == 1000;
     const Pose2 truth = is_mine ? laps.truth[retired] * here.ref_from_query : laps.truth[scan.position_index];
     EXPECT_THAT(keyframe * scan.pose.ref_from_query, test::IsNearPose(truth, 0.10, 2 * kDegree));
-    if (!is_mine) EXPECT_TRUE(all.insert(scan.position_index).second);
+    EXPECT_TRUE(is_mine || all.insert(scan.position_index).second);
   }
   EXPECT_EQ(all.size(), laps.truth.size());
   for (const LoopHypothesis& loop : loops.hypotheses) {
@@ -205,7 +204,7 @@ TEST(SettledMap, NeedsNoMoreKeyframesForMoreLaps) {
   const MapResult result = mapped(laps.log, options);
   ASSERT_EQ(result.fragments.size(), 1U);
   ASSERT_EQ(result.placed().size(), laps.truth.size());
-  EXPECT_LT(test::worst_off_m(poses_of(result), laps.truth), 0.20);
+  EXPECT_LT(test::worst_off_m(poses_of(result), laps.truth), 0.10);
   EXPECT_LT(num_keyframes(result), laps.truth.size() * 2 / 3);
   EXPECT_TRUE(result.positions[20].held_by_loops);
   for (std::size_t i = 0; i < result.positions.size(); ++i) EXPECT_EQ(result.placed()[i].position_index, i);

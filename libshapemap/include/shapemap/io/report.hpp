@@ -13,6 +13,14 @@
 /// The account of a run, for people and scripts.
 namespace shapemap {
 
+/// What a run had cost when so many positions of the log had been read; of several that are mapped as one, of all.
+struct Milestone {
+  std::size_t num_positions = 0;
+  double wall_s = 0.0;
+  double cpu_s = 0.0;
+  double peak_memory_mib = 0.0;
+};
+
 /// What a run cost; the caller measures it.
 struct RunCosts {
   double read_s = 0.0;
@@ -21,6 +29,7 @@ struct RunCosts {
   double wall_s = 0.0;
   double cpu_s = 0.0;
   double peak_memory_mib = 0.0;
+  std::vector<Milestone> milestones;
 };
 
 /// One of the logs that a map was made of.

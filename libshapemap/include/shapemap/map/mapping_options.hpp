@@ -29,7 +29,7 @@ struct EnumNames<Method> {
 struct KeyframeOptions {
   double step_m = 0.50;
   double turn_rad = 20 * kDegree;
-  int settle_at = 2000;
+  int settle_at = 1000;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
