@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "keyframe_store.hpp"
 #include "shapemap/align/robust_align.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/graph/loop_closing.hpp"
@@ -75,28 +76,6 @@ void find_parts(const KeyframeChain& chain, const std::vector<PoseConstraint>& l
     if (map.link_choice[i] == kCut) map.held_by_loops[i] = map.component[i] == map.component[i + 1];
   }
 }
-
-/// Knows the alignments of keyframes as those of their positions.
-class KeyframeStore : public AlignmentStore {
- public:
-  KeyframeStore(const KeyframeChain& chain, AlignmentStore& of_positions)
-      : chain_(chain), of_positions_(of_positions) {}
-
-  std::optional<std::vector<PoseHypothesis>> find(const AlignmentKey& key) override {
-    return of_positions_.find(of_position(key));
-  }
-  void keep(const AlignmentKey& key, const std::vector<PoseHypothesis>& hypotheses) override {
-    of_positions_.keep(of_position(key), hypotheses);
-  }
-
- private:
-  AlignmentKey of_position(const AlignmentKey& key) const {
-    return {chain_.keyframes[key.reference].position_index, chain_.keyframes[key.query].position_index, key.search};
-  }
-
-  const KeyframeChain& chain_;
-  AlignmentStore& of_positions_;
-};
 
 std::vector<LoopHypothesis> loop_hypotheses(const NodeViews& views, const std::vector<ChainLink>& links,
                                             const MappingOptions& options, RunObserver& observer,

@@ -134,7 +134,7 @@ void map_robustly(const Log& log, const MappingOptions& options, RunObserver& ob
   const auto start = std::chrono::steady_clock::now();
   KeyframeMap map = map_of(chain, options, observer, store);
   SubScanCorrections sub_scans = refine_sub_scans_of_map(log, chain, options, observer, map);
-  if (options.loops.close_loops && revise_doubtful_links(options, observer, chain, map)) {
+  if (options.loops.close_loops && revise_doubtful_links(options, observer, store, chain, map)) {
     sub_scans = refine_sub_scans_of_map(log, chain, options, observer, map);
   }
   result.times.loops_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
