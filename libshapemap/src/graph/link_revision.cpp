@@ -125,7 +125,7 @@ class Revision {
 
 RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node,
                         std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulLink>& doubtful,
-                        const VisibilityOptions& visibility, const JoiningLimits& limits, int threads,
+                        const VisibilityOptions& visibility, double least_certainty, int threads,
                         RunObserver& observer) {
   Revision revision(views, std::move(map_from_node), std::move(piece_of_node), visibility, threads);
   RevisedMap result;
@@ -138,7 +138,7 @@ RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node
       if (result.choice[d] != kCut) continue;
       if (is_stale[d]) verdicts[d] = revision.judge(doubtful[d]);
       is_stale[d] = 0;
-      if (verdicts[d].certainty < limits.certainty || verdicts[d].value < limits.value) continue;
+      if (verdicts[d].certainty < least_certainty) continue;
       if (next == doubtful.size() || verdicts[d].certainty > verdicts[next].certainty) next = d;
     }
     if (next == doubtful.size()) break;

@@ -20,9 +20,6 @@ constexpr double kApart_m = 1e4;
 
 constexpr int kMoreEffort = 4;
 
-/// A bad candidate is not clear, however much worse the others are: the right place may not have been found.
-constexpr double kClearValue = 0.0;
-
 /// Some places look alike: a loop that is weaker than this does not vouch for what it joins.
 constexpr double kSureLoop = 18.0;
 
@@ -60,8 +57,7 @@ class LinkDoubts {
     if (doubts_.empty()) return false;
     for (const bool thoroughly : {false, true}) {
       for (Doubt& doubt : doubts_) add_candidates(doubt, thoroughly);
-      settle(thoroughly ? JoiningLimits{options_.link_revision.least_certainty}
-                        : JoiningLimits{options_.link_revision.clear_certainty, kClearValue});
+      settle(thoroughly ? options_.link_revision.least_certainty : options_.link_revision.clear_certainty);
     }
     for (const Doubt& doubt : doubts_) {
       map_.link_choice[doubt.of_map.link] = kCut;
@@ -86,11 +82,11 @@ class LinkDoubts {
   };
 
   /// Joins what is certain by the candidates that there are; the rest stays in doubt.
-  void settle(const JoiningLimits& limits) {
+  void settle(double least_certainty) {
     std::vector<DoubtfulLink> doubtful;
     for (const Doubt& doubt : doubts_) doubtful.push_back(doubt.of_map);
-    RevisedMap revised = revise_links(views_, poses_, piece_, doubtful, options_.robust.search.visibility, limits,
-                                      options_.chain.threads, observer_);
+    RevisedMap revised = revise_links(views_, poses_, piece_, doubtful, options_.robust.search.visibility,
+                                      least_certainty, options_.chain.threads, observer_);
     poses_ = std::move(revised.map_from_node);
     piece_ = std::move(revised.piece_of_node);
     std::vector<Doubt> rest;

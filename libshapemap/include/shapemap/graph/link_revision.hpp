@@ -49,20 +49,14 @@ struct RevisedMap {
   std::vector<int> choice;                 ///< per doubtful link: the candidate that is taken; kCut: none
 };
 
-/// What it takes to join two pieces: the certainty of the best candidate, and what it is worth.
-struct JoiningLimits {
-  double certainty = 1.0;
-  double value = -1e9;
-};
-
 /// Joins the pieces (nodes with the same `piece_of_node`, right to each other) at the doubtful links, the most certain
 /// first. A candidate is worth its own score and what all pairs of scans of the two pieces then say (MapEvidence), as
 /// far as they are near each other along the chain. The best is as certain as it leads over the best other place, less
-/// half of what it is bad by. What is below one of the `limits` is not joined. Stops early, with the rest of the links
-/// as they were, when the observer asks to.
+/// half of what it is bad by. What is less certain than `least_certainty` is not joined. Stops early, with the rest of
+/// the links as they were, when the observer asks to.
 RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node,
                         std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulLink>& doubtful,
-                        const VisibilityOptions& visibility, const JoiningLimits& limits, int threads,
+                        const VisibilityOptions& visibility, double least_certainty, int threads,
                         RunObserver& observer);
 
 }  // namespace shapemap
