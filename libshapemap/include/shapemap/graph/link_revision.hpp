@@ -15,7 +15,7 @@ namespace shapemap {
 struct LinkRevisionOptions {
   double doubt_below = 0.95;
   double clear_certainty = 4.0;
-  double least_certainty = 1.0;
+  double least_certainty = 2.5;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
