@@ -26,7 +26,8 @@ constexpr double kLeastScore = -8.0;
 constexpr double kSame_m = 0.40;
 constexpr double kSame_rad = 8 * kDegree;
 
-/// The right place may be none of the candidates: the best is then better than the others, and still bad.
+/// The right place may be none of the candidates: the best is then better than the others, and still bad. That it is
+/// good makes it no more certain: of two that fit alike, each is right half of the time.
 constexpr double kShareOfValue = 0.5;
 
 /// Of rivals that are worse still, no more is made: the best of many bad ones may be far ahead.
@@ -69,7 +70,7 @@ class Revision {
     for (std::size_t k = 0; k < values.size(); ++k) {
       if (!is_same(doubt.candidates[k].a_from_b, best)) second = std::max(second, values[k]);
     }
-    verdict.certainty = verdict.value - second + kShareOfValue * verdict.value;
+    verdict.certainty = verdict.value - second + std::min(0.0, kShareOfValue * verdict.value);
     return verdict;
   }
 
@@ -124,7 +125,7 @@ class Revision {
 
 RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node,
                         std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulLink>& doubtful,
-                        const VisibilityOptions& visibility, const LinkRevisionOptions& options, int threads,
+                        const VisibilityOptions& visibility, double least_certainty, int threads,
                         RunObserver& observer) {
   Revision revision(views, std::move(map_from_node), std::move(piece_of_node), visibility, threads);
   RevisedMap result;
@@ -137,7 +138,7 @@ RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node
       if (result.choice[d] != kCut) continue;
       if (is_stale[d]) verdicts[d] = revision.judge(doubtful[d]);
       is_stale[d] = 0;
-      if (verdicts[d].certainty < options.least_certainty) continue;
+      if (verdicts[d].certainty < least_certainty) continue;
       if (next == doubtful.size() || verdicts[d].certainty > verdicts[next].certainty) next = d;
     }
     if (next == doubtful.size()) break;

@@ -18,15 +18,6 @@ constexpr double kTrusted = 0.5;
 constexpr std::size_t kMembersKept = 3;
 constexpr double kLoopLoss = 2.0;
 
-std::vector<PoseConstraint> link_constraints(const KeyframeChain& chain, const std::vector<int>& link_choice) {
-  std::vector<PoseConstraint> constraints;
-  for (std::size_t i = 0; i < chain.links.size(); ++i) {
-    if (link_choice[i] == kCut) continue;
-    constraints.push_back(link_constraint(chain, i, static_cast<std::size_t>(link_choice[i])));
-  }
-  return constraints;
-}
-
 /// Fills in what hangs together, and by what. Improbable links that alone hold what comes after them are cut.
 void find_parts(const KeyframeChain& chain, const std::vector<PoseConstraint>& loops, const MappingOptions& options,
                 KeyframeMap& map) {
@@ -89,6 +80,15 @@ ClosedLoop closed_loop(const KeyframeChain& chain, const LoopCluster& cluster) {
 }
 
 }  // namespace
+
+std::vector<PoseConstraint> link_constraints(const KeyframeChain& chain, const std::vector<int>& link_choice) {
+  std::vector<PoseConstraint> constraints;
+  for (std::size_t i = 0; i < chain.links.size(); ++i) {
+    if (link_choice[i] == kCut) continue;
+    constraints.push_back(link_constraint(chain, i, static_cast<std::size_t>(link_choice[i])));
+  }
+  return constraints;
+}
 
 KeyframeMap map_of_chain(const KeyframeChain& chain, const MappingOptions& options) {
   KeyframeMap map;

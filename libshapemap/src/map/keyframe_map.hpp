@@ -22,6 +22,9 @@ struct KeyframeMap {
   std::vector<PoseConstraint> constraints;
 };
 
+/// What the links say by the hypotheses that are chosen, but for those that are cut.
+std::vector<PoseConstraint> link_constraints(const KeyframeChain& chain, const std::vector<int>& link_choice);
+
 /// The chain as it is: errors add up.
 KeyframeMap map_of_chain(const KeyframeChain& chain, const MappingOptions& options);
 

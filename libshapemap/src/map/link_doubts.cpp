@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "keyframe_store.hpp"
 #include "shapemap/align/robust_align.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/graph/link_revision.hpp"
@@ -17,6 +19,13 @@ namespace {
 constexpr double kApart_m = 1e4;
 
 constexpr int kMoreEffort = 4;
+
+/// Some places look alike: a loop that is weaker than this does not vouch for what it joins.
+constexpr double kSureLoop = 18.0;
+
+/// A loop that the map is farther off is not closed.
+constexpr double kAgrees_m = 1.0;
+constexpr double kAgrees_rad = 10 * kDegree;
 
 /// Of a closed loop.
 const Eigen::Matrix3d kLoopCovariance = Eigen::Vector3d(0.01, 0.01, 0.0012).asDiagonal();
@@ -32,40 +41,48 @@ bool looks_all_round(const ScanView& view) {
 
 class LinkDoubts {
  public:
-  LinkDoubts(const MappingOptions& options, RunObserver& observer, KeyframeChain& chain, KeyframeMap& map)
-      : options_(options), observer_(observer), chain_(chain), map_(map) {
+  LinkDoubts(const MappingOptions& options, RunObserver& observer, KeyframeChain& chain, KeyframeMap& map,
+             AlignmentStore* store)
+      : options_(options), observer_(observer), chain_(chain), map_(map), store_(store) {
     for (const Keyframe& keyframe : chain.keyframes) views_.push_back(keyframe.view);
   }
 
   bool run() {
+    poses_ = map_.map_from_keyframe;
     find();
     if (doubts_.empty()) return false;
-    poses_ = map_.map_from_keyframe;
-    piece_ = pieces();
     for (const bool thoroughly : {false, true}) {
       for (Doubt& doubt : doubts_) add_candidates(doubt, thoroughly);
-      settle();
+      settle(thoroughly ? options_.link_revision.least_certainty : options_.link_revision.clear_certainty);
     }
-    for (const Doubt& doubt : doubts_) take(doubt.of_map.link, kCut);
+    for (const Doubt& doubt : doubts_) {
+      map_.link_choice[doubt.of_map.link] = kCut;
+      changed_ = true;
+    }
+    drop_contradicted_loops();
     if (!changed_) return false;
     map_.map_from_keyframe = poses_;
-    part();
-    refine();
+    std::vector<PoseConstraint> joined = link_constraints(chain_, map_.link_choice);
+    const std::vector<PoseConstraint> closed = loops([](const ClosedLoop&) { return true; });
+    joined.insert(joined.end(), closed.begin(), closed.end());
+    part(joined);
+    refine(joined);
     return true;
   }
 
  private:
   struct Doubt {
     DoubtfulLink of_map;
+    std::size_t in_map;           ///< which of the link's hypotheses
     std::vector<int> hypotheses;  ///< per candidate: which of the link's
   };
 
   /// Joins what is certain by the candidates that there are; the rest stays in doubt.
-  void settle() {
+  void settle(double least_certainty) {
     std::vector<DoubtfulLink> doubtful;
     for (const Doubt& doubt : doubts_) doubtful.push_back(doubt.of_map);
     RevisedMap revised = revise_links(views_, poses_, piece_, doubtful, options_.robust.search.visibility,
-                                      options_.link_revision, options_.chain.threads, observer_);
+                                      least_certainty, options_.chain.threads, observer_);
     poses_ = std::move(revised.map_from_node);
     piece_ = std::move(revised.piece_of_node);
     std::vector<Doubt> rest;
@@ -73,41 +90,70 @@ class LinkDoubts {
       const int choice = revised.choice[d];
       if (choice == kCut) {
         rest.push_back(std::move(doubts_[d]));
-      } else if (choice > 0) {
+      } else {
         take(doubts_[d].of_map.link, doubts_[d].hypotheses[static_cast<std::size_t>(choice)]);
       }
     }
     doubts_ = std::move(rest);
   }
 
+  /// Links that join pieces which neither sure links nor sure loops do, whether the map takes them or cuts them.
   void find() {
+    std::vector<PoseConstraint> sure = loops([&](const ClosedLoop& loop) { return is_sure(loop); });
+    std::vector<std::size_t> doubtful;
     for (std::size_t i = 0; i < chain_.links.size(); ++i) {
-      if (map_.link_choice[i] == kCut || map_.held_by_loops[i]) continue;
-      if (link_probability(chain_.links[i], options_.robust.confidence) >= options_.link_revision.doubt_below) continue;
-      if (!looks_all_round(*views_[i]) || !looks_all_round(*views_[i + 1])) continue;
+      if (is_doubtful(i)) {
+        doubtful.push_back(i);
+      } else if (map_.link_choice[i] != kCut) {
+        sure.push_back({i, i + 1, {}, Eigen::Matrix3d::Identity(), 0.0});
+      }
+    }
+    piece_ = connected_parts(views_.size(), sure);
+    for (const std::size_t i : doubtful) {
+      if (piece_[i] == piece_[i + 1]) continue;
       chain_.links[i].num_of_chain = chain_.links[i].hypotheses.size();
-      doubts_.push_back({{i, {}}, {}});
+      doubts_.push_back({{i, {}}, hypothesis_in_map(i), {}});
     }
   }
 
-  /// Nodes that hang together without the doubtful links.
-  std::vector<std::size_t> pieces() const {
-    std::vector<PoseConstraint> sure;
-    const auto is_doubtful = [&](std::size_t i) {
-      return std::any_of(doubts_.begin(), doubts_.end(), [&](const Doubt& doubt) { return doubt.of_map.link == i; });
-    };
-    for (std::size_t i = 0; i < chain_.links.size(); ++i) {
-      if (map_.link_choice[i] != kCut && !is_doubtful(i))
-        sure.push_back({i, i + 1, {}, Eigen::Matrix3d::Identity(), 0});
-    }
-    add_loops(sure);
-    return connected_parts(views_.size(), sure);
+  bool is_sure(const ClosedLoop& loop) const {
+    return loop.strength >= kSureLoop || !both_look_all_round(keyframe_of(loop.a), keyframe_of(loop.b));
   }
 
-  void add_loops(std::vector<PoseConstraint>& constraints) const {
+  /// A link that is cut where loops hold both sides is as doubtful as one that is improbable: so are the loops.
+  bool is_doubtful(std::size_t i) const {
+    if (map_.component[i] != map_.component[i + 1] || chain_.links[i].hypotheses.empty()) return false;
+    if (!both_look_all_round(i, i + 1)) return false;
+    const double chance =
+        map_.link_choice[i] == kCut ? 0.0 : link_probability(chain_.links[i], options_.robust.confidence);
+    return chance < options_.link_revision.doubt_below;
+  }
+
+  bool both_look_all_round(std::size_t a, std::size_t b) const {
+    return looks_all_round(*views_[a]) && looks_all_round(*views_[b]);
+  }
+
+  template <class Which>
+  std::vector<PoseConstraint> loops(const Which& which) const {
+    std::vector<PoseConstraint> constraints;
     for (const ClosedLoop& loop : map_.loops) {
+      if (!which(loop)) continue;
       constraints.push_back({keyframe_of(loop.a), keyframe_of(loop.b), loop.a_from_b, kLoopCovariance, 0.0});
     }
+    return constraints;
+  }
+
+  /// Loops between pieces that were laid together otherwise, or not at all.
+  void drop_contradicted_loops() {
+    const auto is_contradicted = [&](const ClosedLoop& loop) {
+      const std::size_t a = keyframe_of(loop.a);
+      const std::size_t b = keyframe_of(loop.b);
+      const Pose2 off = inverse(loop.a_from_b) * (inverse(poses_[a]) * poses_[b]);
+      return piece_[a] != piece_[b] || off.translation().norm() > kAgrees_m || std::abs(off.theta_rad) > kAgrees_rad;
+    };
+    const auto end = std::remove_if(map_.loops.begin(), map_.loops.end(), is_contradicted);
+    changed_ = changed_ || end != map_.loops.end();
+    map_.loops.erase(end, map_.loops.end());
   }
 
   std::size_t keyframe_of(std::size_t position) const {
@@ -124,23 +170,38 @@ class LinkDoubts {
     } else if (link_probability(link, options_.robust.confidence) < options_.loop_search.bridge_below) {
       add_bridges(i);
     }
-    const auto taken = static_cast<std::size_t>(map_.link_choice[i]);
-    const Pose2 as_in_map = inverse(map_.map_from_keyframe[i]) * map_.map_from_keyframe[i + 1];
-    doubt.hypotheses = {map_.link_choice[i]};
-    doubt.of_map.candidates = {{as_in_map, link.hypotheses[taken].score}};
+    doubt.hypotheses = {static_cast<int>(doubt.in_map)};
+    doubt.of_map.candidates = {{in_map(i), link.hypotheses[doubt.in_map].score}};
     for (std::size_t k = 0; k < link.hypotheses.size(); ++k) {
-      if (k == taken) continue;
+      if (k == doubt.in_map) continue;
       doubt.hypotheses.push_back(static_cast<int>(k));
       doubt.of_map.candidates.push_back({link.hypotheses[k].ref_from_query, link.hypotheses[k].score});
     }
   }
+
+  /// Where loops have cut a link, what the map has may be none of the link's hypotheses.
+  std::size_t hypothesis_in_map(std::size_t i) {
+    if (map_.link_choice[i] != kCut) return static_cast<std::size_t>(map_.link_choice[i]);
+    std::vector<PoseHypothesis>& known = chain_.links[i].hypotheses;
+    const Pose2 pose = in_map(i);
+    add_if_new(refined_hypothesis(*views_[i], *views_[i + 1], pose, options_.robust.search), known);
+    const auto off = [&](const PoseHypothesis& hypothesis) {
+      return (hypothesis.ref_from_query.translation() - pose.translation()).norm() +
+             angle_between(hypothesis.ref_from_query.theta_rad, pose.theta_rad);
+    };
+    const auto nearest = std::min_element(known.begin(), known.end(),
+                                          [&](const auto& one, const auto& other) { return off(one) < off(other); });
+    return static_cast<std::size_t>(nearest - known.begin());
+  }
+
+  Pose2 in_map(std::size_t i) const { return inverse(map_.map_from_keyframe[i]) * map_.map_from_keyframe[i + 1]; }
 
   /// What scans before and after a link say of each other is carried to the link by way of the map.
   void add_bridges(std::size_t i) {
     std::vector<PoseHypothesis>& known = chain_.links[i].hypotheses;
     const std::vector<Pose2>& poses = map_.map_from_keyframe;
     for (const LoopHypothesis& bridge :
-         bridges(views_, {i}, options_.robust.search, options_.chain.threads, observer_)) {
+         bridges(views_, {i}, options_.robust.search, options_.chain.threads, observer_, store_)) {
       const Pose2 a_from_b =
           inverse(poses[i]) * (poses[bridge.a] * bridge.a_from_b * inverse(poses[bridge.b])) * poses[i + 1];
       if (a_from_b.translation().norm() > max_shift_m(*views_[i], *views_[i + 1], options_.robust.search.voting)) {
@@ -163,30 +224,26 @@ class LinkDoubts {
   }
 
   void take(std::size_t link, int hypothesis) {
+    if (map_.link_choice[link] == hypothesis) return;
     map_.link_choice[link] = hypothesis;
     changed_ = true;
   }
 
   /// Moves what is not joined any more apart.
-  void part() {
-    std::vector<PoseConstraint> joined;
-    for (std::size_t i = 0; i < chain_.links.size(); ++i) {
-      if (map_.link_choice[i] != kCut) joined.push_back({i, i + 1, {}, Eigen::Matrix3d::Identity(), 0.0});
-    }
-    add_loops(joined);
+  void part(const std::vector<PoseConstraint>& joined) {
     map_.component = connected_parts(views_.size(), joined);
     for (std::size_t n = 0; n < views_.size(); ++n) {
       if (map_.component[n] > 0) map_.map_from_keyframe[n].x_m += kApart_m * static_cast<double>(map_.component[n]);
     }
+    const std::vector<bool> lone = lone_constraints(views_.size(), joined);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < chain_.links.size(); ++i) {
+      const bool is_cut = map_.link_choice[i] == kCut;
+      map_.held_by_loops[i] = is_cut ? map_.component[i] == map_.component[i + 1] : !lone[next++];
+    }
   }
 
-  void refine() {
-    std::vector<PoseConstraint> known;
-    for (std::size_t i = 0; i < chain_.links.size(); ++i) {
-      if (map_.link_choice[i] == kCut) continue;
-      known.push_back(link_constraint(chain_, i, static_cast<std::size_t>(map_.link_choice[i])));
-    }
-    add_loops(known);
+  void refine(const std::vector<PoseConstraint>& known) {
     map_.map_from_keyframe = refine_map(views_, map_.map_from_keyframe, known, options_.robust.search,
                                         options_.refinement, options_.chain.threads, observer_)
                                  .map_from_node;
@@ -196,6 +253,7 @@ class LinkDoubts {
   RunObserver& observer_;
   KeyframeChain& chain_;
   KeyframeMap& map_;
+  AlignmentStore* store_;
   NodeViews views_;
   std::vector<Doubt> doubts_;
   std::vector<Pose2> poses_;        ///< of the pieces, as far as they are joined
@@ -205,10 +263,12 @@ class LinkDoubts {
 
 }  // namespace
 
-bool revise_doubtful_links(const MappingOptions& options, RunObserver& observer, KeyframeChain& chain,
-                           KeyframeMap& map) {
+bool revise_doubtful_links(const MappingOptions& options, RunObserver& observer, AlignmentStore* store,
+                           KeyframeChain& chain, KeyframeMap& map) {
+  std::optional<KeyframeStore> of_keyframes;
+  if (store) of_keyframes.emplace(chain, *store);
   try {
-    return LinkDoubts(options, observer, chain, map).run();
+    return LinkDoubts(options, observer, chain, map, of_keyframes ? &*of_keyframes : nullptr).run();
   } catch (const Interrupted&) {
     return false;
   }

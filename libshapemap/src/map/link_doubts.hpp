@@ -6,10 +6,11 @@
 
 namespace shapemap {
 
-/// Revises the doubtful links of `map` that alone join what is before them to what comes after, by all scans of both;
-/// see revise_links(). What bridges over a link say of it is added to its hypotheses in `chain`. Whether anything
-/// changed: poses of pieces that are not joined any more then lie far apart.
-bool revise_doubtful_links(const MappingOptions& options, RunObserver& observer, KeyframeChain& chain,
-                           KeyframeMap& map);
+/// Revises the doubtful links of `map` that join what is before them to what comes after, alone or with weak loops, by
+/// all scans of both; see revise_links(). Loops that then are contradicted are opened again. What bridges over a link
+/// say of it is added to its hypotheses in `chain`. Whether anything changed: poses of pieces that are not joined any
+/// more then lie far apart. `store`, by positions, may be null.
+bool revise_doubtful_links(const MappingOptions& options, RunObserver& observer, AlignmentStore* store,
+                           KeyframeChain& chain, KeyframeMap& map);
 
 }  // namespace shapemap

@@ -185,7 +185,7 @@ void map_robustly(const Log& log, const MappingOptions& options, RunObserver& ob
   }
   RunObserver& rest = unless_interrupted();
   SubScanCorrections sub_scans = refine_sub_scans_of_map(log, chain, options, rest, map);
-  if (options.loops.close_loops && revise_doubtful_links(options, rest, chain, map)) {
+  if (options.loops.close_loops && revise_doubtful_links(options, rest, store, chain, map)) {
     sub_scans = refine_sub_scans_of_map(log, chain, options, rest, map);
   }
   result.times.loops_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

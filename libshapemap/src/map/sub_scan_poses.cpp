@@ -23,15 +23,6 @@ SubScanViews views_of_sub_scans(const Log& log, const KeyframeChain& chain, cons
   return views;
 }
 
-std::vector<PoseConstraint> links_taken(const KeyframeChain& chain, const KeyframeMap& map) {
-  std::vector<PoseConstraint> links;
-  for (std::size_t i = 0; i < chain.links.size(); ++i) {
-    if (map.link_choice[i] == kCut) continue;
-    links.push_back(link_constraint(chain, i, static_cast<std::size_t>(map.link_choice[i])));
-  }
-  return links;
-}
-
 }  // namespace
 
 SubScanCorrections refine_sub_scans_of_map(const Log& log, const KeyframeChain& chain, const MappingOptions& options,
@@ -41,8 +32,8 @@ SubScanCorrections refine_sub_scans_of_map(const Log& log, const KeyframeChain& 
   });
   if (!has_several || options.sub_scans.rounds == 0) return {};
   SubScanPoses poses = refine_sub_scans(views_of_sub_scans(log, chain, options), map.map_from_keyframe, map.component,
-                                        links_taken(chain, map), options.robust.search.line, options.sub_scans,
-                                        options.chain.threads, observer);
+                                        link_constraints(chain, map.link_choice), options.robust.search.line,
+                                        options.sub_scans, options.chain.threads, observer);
   map.map_from_keyframe = std::move(poses.map_from_node);
   return std::move(poses.node_from_sub_scan);
 }

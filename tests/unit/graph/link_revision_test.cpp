@@ -38,9 +38,9 @@ struct Torn {
 
   Pose2 true_step(std::size_t n) const { return inverse(truth[n]) * truth[n + 1]; }
 
-  RevisedMap revised(const LinkRevisionOptions& options = {}, int threads = 1) {
+  RevisedMap revised(double least_certainty = 1.0, int threads = 1) {
     RunObserver nobody;
-    return revise_links(views, poses, pieces, doubts, {}, options, threads, nobody);
+    return revise_links(views, poses, pieces, doubts, {}, least_certainty, threads, nobody);
   }
 
   std::vector<Pose2> truth = test::ring_walk(14, 2, 4.0);
@@ -87,9 +87,20 @@ TEST(ReviseLinks, SplitsWhereNoCandidateIsRight) {
 TEST(ReviseLinks, JoinsNothingWhenNothingIsCertainEnough) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
-  LinkRevisionOptions options;
-  options.least_certainty = 1000.0;
-  EXPECT_THAT(map.revised(options).choice, ElementsAre(kCut));
+  EXPECT_THAT(map.revised(1000.0).choice, ElementsAre(kCut));
+}
+
+/// However good both are: the rival's score goes from far behind to far ahead.
+TEST(ReviseLinks, SplitsWhereTwoPlacesFitAlike) {
+  Torn map({6});
+  const Pose2 away = map.doubts[0].candidates[0].a_from_b;
+  std::vector<int> choices;
+  for (double score = 0.0; score < 400.0; score += 3.0) {
+    map.doubts[0].candidates = {{map.true_step(6), 10.0}, {away, score}};
+    const int choice = map.revised(3.0).choice[0];
+    if (choices.empty() || choices.back() != choice) choices.push_back(choice);
+  }
+  EXPECT_THAT(choices, ElementsAre(0, kCut, 1));
 }
 
 /// Nearly the same twice leaves no doubt about where the piece is.
@@ -108,7 +119,7 @@ TEST(ReviseLinks, LeavesAllAsItWasWhenAskedToStop) {
   } impatient;
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
-  const RevisedMap revised = revise_links(map.views, map.poses, map.pieces, map.doubts, {}, {}, 1, impatient);
+  const RevisedMap revised = revise_links(map.views, map.poses, map.pieces, map.doubts, {}, 1.0, 1, impatient);
   EXPECT_THAT(revised.choice, ElementsAre(0));
   EXPECT_LT(test::worst_off_m(revised.map_from_node, map.poses), 1e-6);
 }
@@ -116,8 +127,8 @@ TEST(ReviseLinks, LeavesAllAsItWasWhenAskedToStop) {
 TEST(ReviseLinks, IsTheSameToTheBitForAnyNumberOfThreads) {
   Torn map({3, 8});
   for (DoubtfulLink& doubt : map.doubts) doubt.candidates.push_back({map.true_step(doubt.link), 0.0});
-  const RevisedMap one = map.revised({}, 1);
-  const RevisedMap three = map.revised({}, 3);
+  const RevisedMap one = map.revised(1.0, 1);
+  const RevisedMap three = map.revised(1.0, 3);
   EXPECT_EQ(one.choice, three.choice);
   for (std::size_t n = 0; n < map.poses.size(); ++n)
     EXPECT_THAT(three.map_from_node[n], HasSameBits(one.map_from_node[n]));

@@ -14,16 +14,21 @@ namespace shapemap {
 
 struct LinkRevisionOptions {
   double doubt_below = 0.95;
-  double least_certainty = 1.0;
+  double clear_certainty = 4.0;
+  double least_certainty = 2.5;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit(Field{"revise-below", "a less probable alignment that alone joins two pieces of the map is revised; 0: none",
                 0, 1},
           self.doubt_below);
-    visit(Field{"revise-least-certainty",
-                "it splits the map unless it is better than all others, and good, by this, as logarithm of odds", -1000,
-                1000},
+    visit(
+        Field{"revise-clear-certainty",
+              "it is searched again, thoroughly, unless it is better than all others, and good, by this, as logarithm "
+              "of odds",
+              -1000, 1000},
+        self.clear_certainty);
+    visit(Field{"revise-least-certainty", "it then splits the map unless it is so by this", -1000, 1000},
           self.least_certainty);
   }
 };
@@ -46,11 +51,12 @@ struct RevisedMap {
 
 /// Joins the pieces (nodes with the same `piece_of_node`, right to each other) at the doubtful links, the most certain
 /// first. A candidate is worth its own score and what all pairs of scans of the two pieces then say (MapEvidence), as
-/// far as they are near each other along the chain. What stays doubtful is not joined. Stops early, with the rest of
+/// far as they are near each other along the chain. The best is as certain as it leads over the best other place, less
+/// half of what it is bad by. What is less certain than `least_certainty` is not joined. Stops early, with the rest of
 /// the links as they were, when the observer asks to.
 RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node,
                         std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulLink>& doubtful,
-                        const VisibilityOptions& visibility, const LinkRevisionOptions& options, int threads,
+                        const VisibilityOptions& visibility, double least_certainty, int threads,
                         RunObserver& observer);
 
 }  // namespace shapemap

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/link_doubts.hpp"
+
+#include <gmock/gmock.h>
+
+#include "shapemap/align/confidence.hpp"
+#include "shapemap/graph/loop_closing.hpp"
+#include "support/matchers.hpp"
+#include "support/ring_walk.hpp"
+
+namespace shapemap {
+namespace {
+
+using test::HasSameBits;
+using ::testing::Each;
+using ::testing::IsEmpty;
+using ::testing::Ne;
+using ::testing::SizeIs;
+
+constexpr std::size_t kLink = 6;
+const Pose2 kTurnedAway{0.8, -0.6, kPi / 2};
+
+/// A walk round a corner of the ring. Link 6 is cut for a loop that lays what comes after it elsewhere.
+struct CutForALoop {
+  explicit CutForALoop(double strength) {
+    for (std::size_t n = 0; n < truth.size(); ++n) chain.keyframes.push_back({n, views[n], {}});
+    for (std::size_t i = 0; i + 1 < truth.size(); ++i) {
+      KeyframeLink& link = chain.links.emplace_back();
+      link.hypotheses = {hypothesis_at(*views[i], *views[i + 1], step(i), {})};
+      link.choice = {0, kFullMargin};
+    }
+    map.map_from_keyframe = truth;
+    const Pose2 move = truth[kLink] * step(kLink) * kTurnedAway * inverse(truth[kLink + 1]);
+    for (std::size_t n = kLink + 1; n < truth.size(); ++n) map.map_from_keyframe[n] = move * truth[n];
+    map.link_choice.assign(chain.links.size(), 0);
+    map.link_choice[kLink] = kCut;
+    map.held_by_loops.assign(chain.links.size(), false);
+    map.held_by_loops[kLink] = true;
+    map.component.assign(truth.size(), 0);
+    const std::vector<Pose2>& wrong = map.map_from_keyframe;
+    map.loops = {{kLink - 1, kLink + 2, inverse(wrong[kLink - 1]) * wrong[kLink + 2], strength}};
+  }
+
+  Pose2 step(std::size_t i) const { return inverse(truth[i]) * truth[i + 1]; }
+
+  bool revise(AlignmentStore* store = nullptr) {
+    MappingOptions options;
+    options.chain.threads = 1;
+    RunObserver nobody;
+    return revise_doubtful_links(options, nobody, store, chain, map);
+  }
+
+  std::vector<Pose2> truth = test::ring_walk(14, 2, 4.0);
+  test::Views views = test::views_along(test::ring_world(1), truth);
+  KeyframeChain chain;
+  KeyframeMap map;
+};
+
+TEST(LinkDoubts, AWeakLoopForWhichALinkWasCutIsQuestioned) {
+  CutForALoop walk(5.0);
+  ASSERT_TRUE(walk.revise());
+  EXPECT_THAT(walk.map.loops, IsEmpty()) << "the scans of both sides speak against it";
+  EXPECT_THAT(walk.map.link_choice, Each(Ne(kCut)));
+  EXPECT_THAT(walk.map.component, Each(0U));
+  EXPECT_THAT(walk.map.held_by_loops, Each(false));
+  EXPECT_LT(test::worst_off_m(walk.map.map_from_keyframe, walk.truth), 0.1);
+}
+
+TEST(LinkDoubts, AStrongLoopIsNot) {
+  CutForALoop walk(25.0);
+  walk.revise();
+  EXPECT_THAT(walk.map.loops, SizeIs(1));
+  EXPECT_EQ(walk.map.link_choice[kLink], kCut);
+}
+
+TEST(LinkDoubts, NoneAreLookedForWhereNoneAreWanted) {
+  CutForALoop walk(5.0);
+  const std::vector<Pose2> before = walk.map.map_from_keyframe;
+  MappingOptions options;
+  options.link_revision.doubt_below = 0.0;
+  RunObserver nobody;
+  EXPECT_FALSE(revise_doubtful_links(options, nobody, nullptr, walk.chain, walk.map));
+  for (std::size_t n = 0; n < before.size(); ++n) EXPECT_THAT(walk.map.map_from_keyframe[n], HasSameBits(before[n]));
+}
+
+/// Nothing is ever certain enough here.
+TEST(LinkDoubts, WhatStaysInDoubtSplitsTheMapAndOpensTheLoop) {
+  CutForALoop walk(5.0);
+  MappingOptions options;
+  options.chain.threads = 1;
+  options.link_revision.clear_certainty = 1000.0;
+  options.link_revision.least_certainty = 1000.0;
+  RunObserver nobody;
+  ASSERT_TRUE(revise_doubtful_links(options, nobody, nullptr, walk.chain, walk.map));
+  EXPECT_THAT(walk.map.loops, IsEmpty());
+  EXPECT_EQ(walk.map.link_choice[kLink], kCut);
+  EXPECT_NE(walk.map.component[kLink], walk.map.component[kLink + 1]);
+  EXPECT_FALSE(walk.map.held_by_loops[kLink]);
+}
+
+}  // namespace
+}  // namespace shapemap
