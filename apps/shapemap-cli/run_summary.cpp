@@ -60,6 +60,37 @@ void print_uncertain(const MapResult& result) {
   print_line(text);
 }
 
+/// "positions 3, 5, 8", or of several logs "a.log positions 3, 5; b.log positions 0".
+std::string contradicting_text(const LogSet& logs, const std::vector<std::size_t>& indices) {
+  std::string text;
+  std::size_t last_log = logs.files.size();
+  for (const std::size_t index : indices) {
+    const std::size_t log = part_with(logs.log, index);
+    if (log != last_log) {
+      text += (text.empty() ? "" : "; ") + (logs.is_one() ? "" : logs.files.at(log).path + " ") + "positions ";
+    } else {
+      text += ", ";
+    }
+    last_log = log;
+    text += std::to_string(index_in_whole_log(index - parts_of(logs.log).at(log).first, logs.selection));
+  }
+  return text;
+}
+
+void print_contradicting(const LogSet& logs, const MapResult& result, std::size_t max_listed) {
+  std::vector<std::size_t> found;
+  for (const PlacedPosition& place : result.placed()) {
+    if (place.agreement.contradicts_map) found.push_back(place.position_index);
+  }
+  if (found.empty()) return;
+  const std::size_t total = found.size();
+  found.resize(std::min(total, max_listed));
+  std::string text = counted(total, "scan") + (total == 1 ? " contradicts" : " contradict") +
+                     " the rest of the map: " + contradicting_text(logs, found);
+  if (total > found.size()) text += " and " + std::to_string(total - found.size()) + " more, see --report";
+  print_line(text);
+}
+
 /// "positions 3 to 8 of a.log, 0 to 4 of b.log"
 std::string fragment_text(const LogSet& logs, const std::vector<PlacedPosition>& positions) {
   std::string text;
@@ -103,13 +134,13 @@ void print_details(const LogSet& logs, const RunCosts& costs, const StageTimes& 
     summary.format = logs.files.at(i).format;
     std::fputs(log_summary_text(summary).c_str(), stderr);
   }
-  std::fprintf(
-      stderr,
-      "seconds     read %.2f, map %.2f (shapes %.2f, alignment %.2f, ICP %.2f, decoupled ICP %.2f, loops %.2f), "
-      "write %.2f\n"
-      "memory      %.0f MiB\n",
-      costs.read_s, costs.map_s, times.shape_s, times.align_s, times.icp_s, times.decoupled_icp_s, times.loops_s,
-      costs.write_s, costs.peak_memory_mib);
+  std::fprintf(stderr,
+               "seconds     read %.2f, map %.2f (shapes %.2f, alignment %.2f, ICP %.2f, decoupled ICP %.2f, loops "
+               "%.2f, agreement %.2f), "
+               "write %.2f\n"
+               "memory      %.0f MiB\n",
+               costs.read_s, costs.map_s, times.shape_s, times.align_s, times.icp_s, times.decoupled_icp_s,
+               times.loops_s, times.agreement_s, costs.write_s, costs.peak_memory_mib);
 }
 
 std::string result_text(const MapArguments& arguments, const MapResult& result, double wall_s) {
@@ -153,6 +184,7 @@ void print_summary(const MapArguments& arguments, const LogSet& logs, const MapR
   if (verbose) print_lines("", fragment_lines(logs, result), max_listed);
   if (verbose) print_details(logs, costs, result.times);
   print_uncertain(result);
+  print_contradicting(logs, result, max_listed);
   print_logs(logs, result);
   print_line(result_text(arguments, result, costs.wall_s));
 }

@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "shapemap/core/errors.hpp"
+#include "shapemap/core/grid_line.hpp"
+#include "shapemap/map/placed_rays.hpp"
 
 namespace shapemap {
 namespace {
@@ -20,27 +22,17 @@ constexpr int kMarginCells = 4;           // so that walls at the rim stay visib
 constexpr double kMaxCells = 400e6;       // one byte each here, up to four in a coloured picture
 constexpr double kMaxCellsPerSide = 1e6;  // readers of pictures, OpenCV's too, refuse wider ones
 
-/// What one laser saw from one place, in the map frame.
-struct Rays {
-  Point2 from_m{0.0, 0.0};
-  std::vector<Point2> hits_m;
+struct AllRays {
+  std::vector<Rays> plain;
+  std::vector<Rays> contradicting;
 };
 
-/// A sensor that is tilted beyond the limit has no hits and stays out, its place as well.
-std::vector<Rays> rays_in_map(const Log& log, const std::vector<PlacedPosition>& placed, const ReturnOptions& options) {
-  std::vector<Rays> all;
+AllRays rays_in_map(const Log& log, const std::vector<PlacedPosition>& placed, const ReturnOptions& returns,
+                    Contradicting contradicting) {
+  AllRays all;
   for (const PlacedPosition& place : placed) {
-    const std::vector<SubScan>& sub_scans = log.positions.at(place.position_index).sub_scans;
-    for (std::size_t i = 0; i < sub_scans.size(); ++i) {
-      const Pose2 map_from_sub_scan = place.map_from_robot * place.robot_from_sub_scan.at(i);
-      Rays rays;
-      for (const Return& hit : returns_in_robot(sub_scans[i], options)) {
-        rays.hits_m.push_back(map_from_sub_scan * hit.p_in_robot_m);
-      }
-      if (rays.hits_m.empty()) continue;
-      rays.from_m = map_from_sub_scan * robot_from_sensor2(sub_scans[i]).translation();
-      all.push_back(std::move(rays));
-    }
+    const bool apart = contradicting == Contradicting::kFillGaps && place.agreement.contradicts_map;
+    for (Rays& rays : rays_of(log, place, returns)) (apart ? all.contradicting : all.plain).push_back(std::move(rays));
   }
   return all;
 }
@@ -62,12 +54,14 @@ struct Extent {
   double height() const { return top - bottom + 1.0; }
 };
 
-Extent extent_of(const std::vector<Rays>& all, const std::vector<PlacedPosition>& placed, double resolution_m) {
+Extent extent_of(const AllRays& all, const std::vector<PlacedPosition>& placed, double resolution_m) {
   Extent extent;
   for (const PlacedPosition& place : placed) extent.include(place.map_from_robot.translation(), resolution_m);
-  for (const Rays& rays : all) {
-    extent.include(rays.from_m, resolution_m);
-    for (const Point2& hit_m : rays.hits_m) extent.include(hit_m, resolution_m);
+  for (const std::vector<Rays>* some : {&all.plain, &all.contradicting}) {
+    for (const Rays& rays : *some) {
+      extent.include(rays.from_m, resolution_m);
+      for (const Point2& hit_m : rays.hits_m) extent.include(hit_m, resolution_m);
+    }
   }
   return extent;
 }
@@ -94,22 +88,44 @@ struct Evidence {
 /// One beam by Bresenham's line: free up to the hit, occupied there. MRPT's own insertion of a scan is not used:
 /// it spaces n beams by aperture / n rather than aperture / (n - 1), does not know tilted lasers, and lets long rays
 /// drift off by a cell.
-void insert_ray(MrptGrid& grid, Eigen::Vector2i cell, const Eigen::Vector2i& hit, const Evidence& evidence) {
-  const Eigen::Vector2i step(cell.x() < hit.x() ? 1 : -1, cell.y() < hit.y() ? 1 : -1);
-  const Eigen::Vector2i length = (hit - cell).cwiseAbs();
-  int balance = length.x() - length.y();
-  while (cell != hit) {
+void insert_ray(MrptGrid& grid, const Eigen::Vector2i& from, const Eigen::Vector2i& hit, const Evidence& evidence) {
+  for_each_cell_before(from, hit, [&](const Eigen::Vector2i& cell) {
     MrptGrid::updateCell_fast_free(grid.getRow(cell.y()) + cell.x(), evidence.free, evidence.free_limit);
-    const int twice = 2 * balance;
-    if (twice > -length.y()) {
-      balance -= length.y();
-      cell.x() += step.x();
-    }
-    if (twice < length.x()) {
-      balance += length.x();
-      cell.y() += step.y();
+  });
+  MrptGrid::updateCell_fast_occupied(grid.getRow(hit.y()) + hit.x(), evidence.occupied, evidence.occupied_limit);
+}
+
+/// What the grid says before scans that contradict it are drawn.
+class GridBefore {
+ public:
+  explicit GridBefore(const MrptGrid& grid) : width_(grid.getSizeX()) {
+    for (std::size_t y = 0; y < grid.getSizeY(); ++y) {
+      const MrptGrid::cellType* row = grid.getRow(static_cast<int>(y));
+      cells_.insert(cells_.end(), row, row + width_);
     }
   }
+  /// Nobody looked, or as many saw it free as occupied.
+  bool is_unknown(const Eigen::Vector2i& cell) const { return at(cell) == 0; }
+  bool is_occupied(const Eigen::Vector2i& cell) const { return at(cell) < 0; }
+
+ private:
+  MrptGrid::cellType at(const Eigen::Vector2i& cell) const {
+    return cells_[static_cast<std::size_t>(cell.y()) * width_ + static_cast<std::size_t>(cell.x())];
+  }
+  std::size_t width_;
+  std::vector<MrptGrid::cellType> cells_;
+};
+
+/// Draws a beam only where nothing is known, and up to the first surface that is.
+void fill_gaps(MrptGrid& grid, const GridBefore& before, const Eigen::Vector2i& from, const Eigen::Vector2i& hit,
+               const Evidence& evidence) {
+  bool is_stopped = false;
+  for_each_cell_before(from, hit, [&](const Eigen::Vector2i& cell) {
+    is_stopped = is_stopped || before.is_occupied(cell);
+    if (is_stopped || !before.is_unknown(cell)) return;
+    MrptGrid::updateCell_fast_free(grid.getRow(cell.y()) + cell.x(), evidence.free, evidence.free_limit);
+  });
+  if (is_stopped || !before.is_unknown(hit)) return;
   MrptGrid::updateCell_fast_occupied(grid.getRow(hit.y()) + hit.x(), evidence.occupied, evidence.occupied_limit);
 }
 
@@ -140,7 +156,7 @@ GridMap build_grid_map(const Log& log, const std::vector<PlacedPosition>& placed
   validate(options);
   if (placed.empty()) throw OutputError("no position has a pose, so there is no map to draw");
   const double resolution_m = options.resolution_m;
-  const std::vector<Rays> all = rays_in_map(log, placed, returns);
+  const AllRays all = rays_in_map(log, placed, returns, options.contradicting);
   const Extent extent = extent_of(all, placed, resolution_m);
   check_size(extent, resolution_m);
 
@@ -152,9 +168,16 @@ GridMap build_grid_map(const Log& log, const std::vector<PlacedPosition>& placed
                            static_cast<int>(std::floor(p_m.y() / resolution_m) - extent.bottom));
   };
   const Evidence evidence;
-  for (const Rays& rays : all) {
+  for (const Rays& rays : all.plain) {
     const Eigen::Vector2i from = cell_of(rays.from_m);
     for (const Point2& hit_m : rays.hits_m) insert_ray(grid, from, cell_of(hit_m), evidence);
+  }
+  if (!all.contradicting.empty()) {
+    const GridBefore before(grid);
+    for (const Rays& rays : all.contradicting) {
+      const Eigen::Vector2i from = cell_of(rays.from_m);
+      for (const Point2& hit_m : rays.hits_m) fill_gaps(grid, before, from, cell_of(hit_m), evidence);
+    }
   }
   return picture_of(grid, extent, resolution_m);
 }

@@ -32,6 +32,11 @@ std::size_t num_inside(const std::vector<PlacedPosition>& placed, const LogPart&
   }));
 }
 
+std::size_t num_contradicting(const std::vector<PlacedPosition>& placed) {
+  return static_cast<std::size_t>(std::count_if(
+      placed.begin(), placed.end(), [](const PlacedPosition& place) { return place.agreement.contradicts_map; }));
+}
+
 Json options_json(const RunReport& report) {
   Json all = Json::object();
   add_options(report.reading, all);
@@ -116,7 +121,15 @@ Json position_json(const PositionResult& position, std::size_t reference, const 
           {"reason", position.reason},
           {"alignment", alignment_json(position, reference)},
           {"why_not_in_map", report.result.why_not_in_map(position)},
-          {"map_from_robot", nullptr}};
+          {"map_from_robot", nullptr},
+          {"agreement", nullptr}};
+}
+
+Json agreement_json(const ScanAgreement& agreement) {
+  return {{"agree", agreement.agree},
+          {"through", agreement.through},
+          {"in_free", agreement.in_free},
+          {"contradicts_map", agreement.contradicts_map}};
 }
 
 Json positions_json(const RunReport& report) {
@@ -126,6 +139,11 @@ Json positions_json(const RunReport& report) {
   for (const PositionResult& position : report.result.positions) {
     entry_of.at(position.position_index) = list.size();
     list.push_back(position_json(position, references[list.size()], report));
+  }
+  for (const Fragment& fragment : report.result.fragments) {
+    for (const PlacedPosition& place : fragment.positions) {
+      list.at(entry_of.at(place.position_index))["agreement"] = agreement_json(place.agreement);
+    }
   }
   for (const PlacedPosition& place : report.result.placed()) {
     list.at(entry_of.at(place.position_index))["map_from_robot"] = pose_json(place.map_from_robot);
@@ -176,9 +194,10 @@ Json timings_json(const RunReport& report) {
   const RunCosts& costs = report.costs;
   return {{"shape", times.shape_s}, {"align", times.align_s},
           {"icp", times.icp_s},     {"decoupled_icp", times.decoupled_icp_s},
-          {"loops", times.loops_s}, {"read", costs.read_s},
-          {"map", costs.map_s},     {"write", costs.write_s},
-          {"wall", costs.wall_s},   {"cpu", costs.cpu_s}};
+          {"loops", times.loops_s}, {"agreement", times.agreement_s},
+          {"read", costs.read_s},   {"map", costs.map_s},
+          {"write", costs.write_s}, {"wall", costs.wall_s},
+          {"cpu", costs.cpu_s}};
 }
 
 Json milestones_json(const RunCosts& costs) {
@@ -204,6 +223,7 @@ std::string json_report(const RunReport& report) {
                     {"options", options_json(report)},
                     {"num_positions", report.result.positions.size()},
                     {"num_placed", report.result.placed().size()},
+                    {"num_contradicting", num_contradicting(report.result.placed())},
                     {"interrupted", report.result.interrupted},
                     {"fragments", fragments_json(report)},
                     {"loops", loops_json(report.result)},

@@ -2,9 +2,11 @@
 #include "shapemap/map/map_log.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 #include "chains.hpp"
 #include "shapemap/core/errors.hpp"
+#include "shapemap/map/scan_agreement.hpp"
 
 namespace shapemap {
 namespace {
@@ -43,6 +45,9 @@ MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& ob
   } catch (const Interrupted&) {
     result.interrupted = true;
   }
+  const auto start = std::chrono::steady_clock::now();
+  judge_scans(log, options.returns, options.agreement, result.fragments);
+  result.times.agreement_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.largest_fragment = largest(result.fragments);
   return result;
 }

@@ -139,6 +139,48 @@ TEST(GridMap, WithoutAPoseThereIsNoMap) {
   EXPECT_THROW(build_grid_map(log_of(three_beams(1, 1, 1)), {}, ReturnOptions{}, GridMapOptions{}), OutputError);
 }
 
+/// Looks ahead along x: what others saw up to 2 m, and one that contradicts them.
+struct Disputed {
+  Disputed() {
+    log.positions.push_back({1.0, {three_beams(1.0F, 2.0F, 1.0F)}, std::nullopt});
+    log.positions.push_back({2.0, {three_beams(1.0F, 3.0F, 0.5F)}, std::nullopt});
+    placed = {placed_at({0.05, 0.05, 0.0}, 0), placed_at({0.05, 0.05, 0.0}, 0), placed_at({0.05, 0.05, 0.0}, 1)};
+  }
+  GridMap map(Contradicting what) const { return build_grid_map(log, placed, {}, GridMapOptions{0.1, what}); }
+
+  Log log;
+  std::vector<PlacedPosition> placed;
+};
+
+TEST(GridMap, WithoutContradictionsTheyAreDrawnAlike) {
+  const Disputed disputed;
+  EXPECT_EQ(disputed.map(Contradicting::kFillGaps).grey, disputed.map(Contradicting::kAsOthers).grey);
+}
+
+TEST(GridMap, WhatContradictsDrawsNothingWhereOthersLookedAndNothingBehindTheirWalls) {
+  Disputed disputed;
+  const GridMap as_others = disputed.map(Contradicting::kAsOthers);
+  disputed.placed[2].agreement.contradicts_map = true;
+  EXPECT_EQ(disputed.map(Contradicting::kAsOthers).grey, as_others.grey);
+  const GridMap map = disputed.map(Contradicting::kFillGaps);
+  EXPECT_LT(grey_at(as_others, 0.05, 0.55), grey_at(map, 0.05, 0.55)) << "free, whatever it says";
+  EXPECT_LT(grey_at(map, 2.05, 0.05), 60) << "a wall, whatever it says";
+  EXPECT_TRUE(is_unknown(grey_at(map, 2.55, 0.05))) << "behind that wall";
+  EXPECT_TRUE(is_unknown(grey_at(map, 3.05, 0.05)));
+  EXPECT_LT(grey_at(as_others, 3.05, 0.05), kUnknownLow);
+}
+
+TEST(GridMap, WhatContradictsDrawsWhereNobodyElseLooked) {
+  Disputed disputed;
+  disputed.placed = {placed_at({0.05, 0.05, 0.0}, 0), placed_at({0.05, 0.05, kPi}, 1)};
+  disputed.placed[1].agreement.contradicts_map = true;
+  const GridMap map = disputed.map(Contradicting::kFillGaps);
+  EXPECT_GT(grey_at(map, -1.55, 0.05), kUnknownHigh);
+  EXPECT_LT(grey_at(map, -2.95, 0.05), kUnknownLow);
+  disputed.placed[0].agreement.contradicts_map = true;
+  EXPECT_LT(grey_at(disputed.map(Contradicting::kFillGaps), 2.05, 0.05), kUnknownLow) << "even if all do";
+}
+
 TEST(GridMap, ComesOutTheSameEachTime) {
   const Log log = log_of(three_beams(1.0F, 2.0F, 3.0F));
   const Pose2 pose{0.3, 0.7, 0.123};

@@ -162,6 +162,22 @@ TEST_F(Report, TellsLoopsAndWhatTheyHold) {
   EXPECT_EQ(report["interrupted"], false);
 }
 
+TEST_F(Report, TellsHowEachScanGoesWithTheRest) {
+  result_.fragments[0].positions[1].agreement = {0.5, 0.25, 0.125, true};
+  result_.fragments[1].positions[0].agreement = {0.0, 0.0, 1.0, true};
+  result_.positions.emplace_back().position_index = 3;
+  log_.positions.push_back({13.0, {SubScan{}}, {}});
+  result_.times.agreement_s = 0.5;
+  const Json report = parsed();
+  EXPECT_EQ(report["num_contradicting"], 1) << "of those in the map";
+  const Json wanted = Json::parse(R"({"agree": 0.5, "through": 0.25, "in_free": 0.125, "contradicts_map": true})");
+  EXPECT_EQ(report["positions"][1]["agreement"], wanted);
+  EXPECT_EQ(report["positions"][0]["agreement"]["contradicts_map"], false);
+  EXPECT_EQ(report["positions"][2]["agreement"]["in_free"], 1.0) << "with its own fragment";
+  EXPECT_TRUE(report["positions"][3]["agreement"].is_null()) << "in no fragment";
+  EXPECT_EQ(report["seconds"]["agreement"], 0.5);
+}
+
 TEST_F(Report, TellsTheKeyframeThatAnAlignmentIsTo) {
   result_.positions[1].is_keyframe = false;
   const Json positions = parsed()["positions"];

@@ -11,12 +11,26 @@
 
 namespace shapemap {
 
+/// What scans that contradict the rest of the map draw.
+enum class Contradicting {
+  kFillGaps,  ///< only where no other scan has looked, up to the first surface of theirs
+  kAsOthers,
+};
+
+template <>
+struct EnumNames<Contradicting> {
+  static constexpr std::array<std::string_view, 2> names{"fill-gaps", "as-others"};
+};
+
 struct GridMapOptions {
   double resolution_m = 0.05;
+  Contradicting contradicting = Contradicting::kFillGaps;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit(Field{"resolution-m", "side of a map cell [m]", 0.001, 10}, self.resolution_m);
+    visit(Field{"contradicting-scans", "what scans that contradict the rest of the map draw into it"},
+          self.contradicting);
   }
 };
 
@@ -32,7 +46,8 @@ struct GridMap {
   Eigen::Vector2i pixel_at(const Point2& p_in_map_m) const;
 };
 
-/// Ray-traced occupancy grid of the placed positions, built with MRPT's grid map. Throws OutputError when the map
+/// Ray-traced occupancy grid of the placed positions, built with MRPT's grid map. Those that contradict the rest are
+/// drawn last. Throws OutputError when the map
 /// would have more than 400 million cells.
 GridMap build_grid_map(const Log& log, const std::vector<PlacedPosition>& placed, const ReturnOptions& returns,
                        const GridMapOptions& options);

@@ -9,6 +9,7 @@
 #include "shapemap/graph/loop_hypotheses.hpp"
 #include "shapemap/graph/map_refinement.hpp"
 #include "shapemap/graph/sub_scan_refinement.hpp"
+#include "shapemap/map/scan_agreement.hpp"
 #include "shapemap/scan/returns.hpp"
 #include "shapemap/shape/polyline_em.hpp"
 #include "shapemap/shape/shape.hpp"
@@ -103,6 +104,7 @@ struct MappingOptions {
   LinkRevisionOptions link_revision;
   SubScanOptions sub_scans;
   AlignOptions align;  ///< of the paper's method
+  AgreementOptions agreement;
   ChainOptions chain;
 
   /// Calls `visit(title, group)` for each group; `group` is a struct with `fields`.
@@ -133,6 +135,7 @@ struct MappingOptions {
     visit("Paper's method: overlap", self.align.overlap);
     visit("Paper's method: ICP", self.align.icp);
     visit("Paper's method: trust", self.align.trust);
+    visit("Agreement of scans with the map", self.agreement);
     visit("Chain", self.chain);
   }
 };

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+
+namespace shapemap {
+
+/// Bresenham's line: calls `visit(cell)` for each cell from `from` on, up to the one before `to`.
+template <class Visit>
+void for_each_cell_before(Eigen::Vector2i from, const Eigen::Vector2i& to, Visit&& visit) {
+  const Eigen::Vector2i step(from.x() < to.x() ? 1 : -1, from.y() < to.y() ? 1 : -1);
+  const Eigen::Vector2i length = (to - from).cwiseAbs();
+  int balance = length.x() - length.y();
+  while (from != to) {
+    visit(static_cast<const Eigen::Vector2i&>(from));
+    const int twice = 2 * balance;
+    if (twice > -length.y()) {
+      balance -= length.y();
+      from.x() += step.x();
+    }
+    if (twice < length.x()) {
+      balance += length.x();
+      from.y() += step.y();
+    }
+  }
+}
+
+}  // namespace shapemap

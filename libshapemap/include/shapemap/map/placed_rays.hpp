@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "shapemap/map/trajectory.hpp"
+#include "shapemap/scan/returns.hpp"
+#include "shapemap/scan/scan.hpp"
+
+namespace shapemap {
+
+/// What one laser saw from one place, in the map frame.
+struct Rays {
+  Point2 from_m{0.0, 0.0};
+  std::vector<Point2> hits_m;
+};
+
+/// Of each sub-scan of a position that has any. A sensor that is tilted beyond the limit has no hits and stays out.
+std::vector<Rays> rays_of(const Log& log, const PlacedPosition& place, const ReturnOptions& options);
+
+}  // namespace shapemap
