@@ -31,6 +31,7 @@ from evaluation.selection import add_datasets_argument, datasets_folder, name_li
 from simulate_arena import number
 
 BIN = PROJECT / "build/release/bin"
+TIMEOUT_S = 1800.0
 QUICK_LOGS, QUICK_TIMEOUT_S = ["demo"], 15.0
 EXAMPLE = f"""methods: {", ".join(ALL)};
   BASELINE+robust and BASELINE+paper get our estimated poses as odometry; see docs/evaluation.md
@@ -55,7 +56,12 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     add("--quick", action="store_true", help="the demo log only, at most 15 s for a run: under two minutes")
     add("--out", type=Path, default=PROJECT / "results/evaluation", metavar="DIR", help="(default results/evaluation)")
     add("--jobs", type=number(1, 256, int), default=os.cpu_count() or 1, metavar="N", help="runs at the same time")
-    add("--timeout-s", type=number(0.1, 10**6), default=1800.0, metavar="S", help="for one run (default %(default)g)")
+    add(
+        "--timeout-s",
+        type=number(0.1, 10**6),
+        metavar="S",
+        help=f"for one run (default {TIMEOUT_S:g}, with --quick {QUICK_TIMEOUT_S:g})",
+    )
     add("--resume", action="store_true", help="keep the runs in --out that are done, if nothing about them changed")
     add("--cli", type=Path, default=BIN / "shapemap-cli", metavar="FILE", help="the mapper")
     add("--baselines", type=Path, default=BIN / "shapemap-baselines", metavar="FILE", help="the baselines")
@@ -78,7 +84,8 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
         parser.error(f"--methods: {error}")
     if arguments.quick:
         arguments.only = arguments.only or QUICK_LOGS
-        arguments.timeout_s = min(arguments.timeout_s, QUICK_TIMEOUT_S)
+    if arguments.timeout_s is None:
+        arguments.timeout_s = QUICK_TIMEOUT_S if arguments.quick else TIMEOUT_S
     return arguments
 
 
