@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/evaluate.py --quick with the real programs. How long a run may take is no matter here: sanitizers are slow."""
+"""scripts/evaluate.py --quick with the real programs. How long a run takes is no matter here: sanitizers are slow."""
 
 import json
 import pathlib
