@@ -163,6 +163,7 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     arguments = parser.parse_args(argv)
     if not os.access(arguments.cli, os.X_OK):
         parser.error(f"--cli: {arguments.cli} is not a program; build it with `cmake --build --preset release`")
+    arguments.cli = arguments.cli.resolve()  # a bare name would be looked up elsewhere
     return arguments
 
 

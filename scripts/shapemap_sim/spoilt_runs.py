@@ -11,23 +11,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .buildings import BuildingOptions, furnished_building
-from .disturbances import at_position, ranges_with_crowd
+from .disturbances import at_position, ranges_with_crowd, ranges_with_glass
 from .pairs import pose_from
 from .poses import Array, compose, wrap_angle
 from .raycast import RayCaster
 from .robot import Drive
 from .scenes import StrollOptions, laser, run_of, stroll
-from .sensor import exact_ranges
+from .sensor import SensorOptions, exact_ranges
 from .simulation import Simulation
 from .streams import stream
 from .whole_maps import best_motion
 
-KINDS = ("tilted", "crowd", "elsewhere", "none")
+KINDS = ("tilted", "crowd", "elsewhere", "none", "glass")
 TILT_DEG = (10.0, 18.0)
 CROWD_SHARE = 0.4
+GLASS_STEEP_DEG = 35.0  # beams that meet glass more squarely go through most often, and others seldom
+GLASS_THROUGH = (0.7, 0.05)
 SPACING_M = 0.6
 OFF_M = 0.3  # a beam is off when its range is wrong by more
-SPOILT = 0.3  # a scan of which more is off contradicts the map; the limit of the mapper is 0.20 of what others know
+SPOILT = 0.3  # a scan of which more is off contradicts the map; the limit of the mapper is 0.15 of what others know
 CLEAN = 0.1  # and one of which less is, does not; of those between either may be said
 MISPLACED_M = 0.5
 MISPLACED_DEG = 10.0
@@ -51,14 +53,28 @@ def lean(drive: Drive, chosen: NDArray[np.int64], seed: int) -> Drive:
     return replace(drive, gradient=gradient)
 
 
+def slants_deg(ranges: Array, sensor: SensorOptions) -> Array:
+    """How far from squarely each beam meets its surface, by where the next beam meets its own."""
+    following = np.concatenate([ranges[..., 1:], ranges[..., -1:]], axis=-1)
+    with np.errstate(invalid="ignore"):
+        slope = np.abs(following - ranges) / (ranges * np.deg2rad(sensor.angle_step_deg))
+    return np.asarray(np.rad2deg(np.arctan(slope)))
+
+
 def spoilt_run(kind: str, seed: int, num_positions: int = 60, share: float = 0.15) -> SpoiltRun:
     """A walk of which a `share` of the scans are spoilt, never the first: "tilted", taken in a "crowd", or taken
-    "elsewhere", in another building."""
-    world, sensor = furnished_building(seed, BuildingOptions()), laser(270.0, 0.5, 20.0)
+    "elsewhere", in another building. None is with "none", and with "glass", where beams that
+    meet the walls between rooms and corridor squarely mostly go through, and others seldom: the walls are
+    there for some scans and not for others, of which none is wrong."""
+    world, sensor = furnished_building(seed, BuildingOptions(glass=kind == "glass")), laser(270.0, 0.5, 20.0)
     walk = stroll(seed, world.route, StrollOptions(num_positions=num_positions, spacing_m=SPACING_M))
     clean = exact_ranges(RayCaster(world), walk, sensor)
+    if kind == "glass":
+        behind = ranges_with_glass(world, walk, sensor, 1.0, seed)
+        share_through = np.where(slants_deg(clean, sensor) < GLASS_STEEP_DEG, *GLASS_THROUGH)
+        clean = np.where(stream(seed, "through glass").random(clean.shape) < share_through, behind, clean)
     exact = clean.copy()
-    count = 0 if kind == "none" else round(share * num_positions)
+    count = 0 if kind in ("none", "glass") else round(share * num_positions)
     chosen = 1 + stream(seed, "spoilt").permutation(num_positions - 1)[:count]
     if kind == "tilted":
         walk = lean(walk, chosen, seed)

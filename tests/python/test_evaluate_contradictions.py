@@ -14,7 +14,8 @@ import pytest
 import evaluate_contradictions
 from evaluate_contradictions import LogOutcome, Outcome, log_table, run_simulated, simulated_table
 from shapemap_sim.poses import compose
-from shapemap_sim.spoilt_runs import KINDS, JudgedScan, judged_scans, misplaced, spoilt_run
+from shapemap_sim.scenes import laser
+from shapemap_sim.spoilt_runs import KINDS, JudgedScan, judged_scans, misplaced, slants_deg, spoilt_run
 
 CLI = Path(os.environ.get("SHAPEMAP_CLI", evaluate_contradictions.ROOT / "build/release/bin/shapemap-cli"))
 
@@ -38,8 +39,16 @@ def test_only_the_chosen_scans_are_spoilt(kind: str) -> None:
         assert (run.off[spoilt] > 0.5).all()
     if kind == "tilted":
         assert len(spoilt) >= 2
-    if kind == "none":
+    if kind in ("none", "glass"):
         assert not run.off.any()
+
+
+def test_walls_of_glass_are_there_for_beams_that_meet_them_aslant() -> None:
+    beams = laser(90.0, 1.0, 20.0)
+    square = slants_deg(2.0 / np.cos(beams.beam_angles_rad()), beams)
+    np.testing.assert_allclose(square[50:-1], np.arange(5, 45) + 0.5, atol=1.0)
+    glass = spoilt_run("glass", seed=3, num_positions=20)
+    assert {face.kind for face in glass.simulation.world.faces} >= {"glass"}
 
 
 def test_the_same_seed_gives_the_same_walk() -> None:

@@ -18,6 +18,7 @@ constexpr double kFarthestCell = 1e8;      // what is farther off is no map, and
 constexpr double kBesideSensor_m = 0.5;    // in a doorway, a jamb that is a little off hides half of the view
 constexpr int kBeforeHit = 1;              // cells: a surface is rough, and its range noisy
 constexpr std::uint32_t kSurfaceOdds = 4;  // a thin or mirroring surface stops at least every fourth look
+constexpr std::uint32_t kWallOdds = 4;     // and a wall nearly all: others are glass, or edges
 
 struct CellRays {
   Eigen::Vector2i from;
@@ -114,11 +115,11 @@ class Judge {
         [look](LookCell& cell) { cell.last_hit = look; });
   }
 
-  /// Most other looks that came to the cell ended there.
-  bool is_surface(const Eigen::Vector2i& at, std::uint32_t look) {
+  /// Nearly all other looks that came to the cell ended there.
+  bool is_wall(const Eigen::Vector2i& at, std::uint32_t look) {
     const LookCell& cell = grid_.seen(at);
     const std::uint32_t hits = cell.other_hits(look);
-    return hits >= min_looks_ && hits >= cell.other_passes(look);
+    return hits >= min_looks_ && hits >= kWallOdds * cell.other_passes(look);
   }
 
   std::uint32_t hits_around(const Eigen::Vector2i& at, int reach, std::uint32_t look) {
@@ -137,7 +138,7 @@ class Judge {
     for_each_cell_before(from, end, [&](const Eigen::Vector2i& cell) {
       if (through || (end - cell).cwiseAbs().maxCoeff() <= 2 * reach_) return;
       if (!met) {
-        met = (cell - from).cwiseAbs().maxCoeff() >= beside_ && is_surface(cell, look);
+        met = (cell - from).cwiseAbs().maxCoeff() >= beside_ && is_wall(cell, look);
       } else {
         through = hits_around(cell, reach_, look) == 0;
       }

@@ -146,6 +146,17 @@ TEST(ScanAgreement, AFewBeamsThatMeetAPersonAreNoContradiction) {
   EXPECT_TRUE(mapped.agreements(strict)[30].contradicts_map);
 }
 
+TEST(ScanAgreement, WallsThatOthersLookedThroughTooAreNoWalls) {
+  Mapped alone = ring(6);
+  for (float& range_m : alone.ranges(30)) range_m += 1.5F;
+  Mapped glass = ring(6);
+  for (std::size_t i = 0; i < glass.log.positions.size(); i += 2) {
+    for (float& range_m : glass.ranges(i)) range_m += 1.5F;
+  }
+  EXPECT_GT(alone.agreements()[30].through, 0.5);
+  EXPECT_LT(glass.agreements()[30].through, 0.15);
+}
+
 TEST(ScanAgreement, LongGrazingBeamsThatAreALittleOffGoThroughNothing) {
   test::World corridor;
   test::add_polygon(corridor, {{0.0, -1.0}, {40.0, -1.0}, {40.0, 1.0}, {0.0, 1.0}});

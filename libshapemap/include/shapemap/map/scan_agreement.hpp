@@ -15,7 +15,7 @@ struct AgreementOptions {
   double cell_m = 0.10;
   double tolerance_m = 0.10;
   int min_looks = 2;
-  double contradicting_share = 0.20;
+  double contradicting_share = 0.15;
   double min_known_share = 0.2;
 
   template <class Self, class Visit>
