@@ -19,7 +19,7 @@ from evaluate_arena import parse_seeds, run_mapper
 from shapemap_sim.rates import wilson_interval
 from shapemap_sim.spoilt_runs import KINDS, JudgedScan, judged_scans, spoilt_run
 from shapemap_sim.write import nist_text
-from simulate_arena import number
+from simulate_arena import number, some_of
 
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLE = """examples:
@@ -128,20 +128,12 @@ def log_table(outcomes: list[LogOutcome]) -> str:
     return "\n".join(lines)
 
 
-def parse_kinds(text: str) -> list[str]:
-    names = [name for name in text.split(",") if name]
-    unknown = sorted(set(names) - set(KINDS))
-    if unknown:
-        raise argparse.ArgumentTypeError(f"unknown {', '.join(unknown)}; expected some of {', '.join(KINDS)}")
-    return names
-
-
 def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, epilog=EXAMPLE, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     add = parser.add_argument
-    add("--kinds", type=parse_kinds, default=list(KINDS), metavar="LIST", help="of simulated walks (default all)")
+    add("--kinds", type=some_of(KINDS), default=list(KINDS), metavar="LIST", help="of simulated walks (default all)")
     add("--seeds", type=parse_seeds, default=[0], metavar="LIST", help="such as 0-9 (default 0)")
     add("--logs", type=Path, nargs="*", default=[], metavar="FILE", help="real logs")
     add(

@@ -21,7 +21,7 @@ from shapemap_sim.hard_scenes import SCENES, Scene
 from shapemap_sim.outcomes import PairOutcome, pair_outcomes
 from shapemap_sim.simulation import Simulation
 from shapemap_sim.write import nist_text
-from simulate_arena import number
+from simulate_arena import number, some_of
 
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLE = """example:
@@ -135,20 +135,16 @@ def as_json(results: list[SceneResult]) -> str:
     return json.dumps(rows, indent=1) + "\n"
 
 
-def parse_scenes(text: str) -> list[str]:
-    names = text.split(",")
-    unknown = sorted(set(names) - set(SCENES))
-    if unknown:
-        raise argparse.ArgumentTypeError(f"unknown {', '.join(unknown)}; expected some of {', '.join(SCENES)}")
-    return names
-
-
 def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, epilog=EXAMPLE, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument(
-        "--scenes", type=parse_scenes, default=list(SCENES), metavar="LIST", help="names of scenes (default all)"
+        "--scenes",
+        type=some_of(SCENES, at_least=1),
+        default=list(SCENES),
+        metavar="LIST",
+        help="names of scenes (default all)",
     )
     parser.add_argument("--seeds", type=parse_seeds, default=[0], metavar="LIST", help="such as 0-9 (default 0)")
     parser.add_argument(

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +36,21 @@ def number(low: float, high: float, kind: Callable[[str], Any] = float) -> Calla
         return value
 
     parse.__name__ = "number"
+    return parse
+
+
+def some_of(known: Collection[str], at_least: int = 0) -> Callable[[str], list[str]]:
+    """An argparse type: names with commas between, in the order given."""
+
+    def parse(text: str) -> list[str]:
+        names = [name for name in text.split(",") if name]
+        unknown = sorted(set(names) - set(known))
+        if unknown or len(names) < at_least:
+            said = f"unknown {', '.join(unknown)}" if unknown else "nothing chosen"
+            raise argparse.ArgumentTypeError(f"{said}; expected some of {', '.join(known)}")
+        return names
+
+    parse.__name__ = "list"
     return parse
 
 

@@ -4,11 +4,12 @@ what is done."""
 
 from __future__ import annotations
 
+import contextlib
 import json
 import multiprocessing
 import signal
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from multiprocessing.connection import wait
 from multiprocessing.process import BaseProcess
 from typing import Any
@@ -18,13 +19,26 @@ from tqdm import tqdm
 from .runs import Job, execute, failed, finished, write
 
 GRACE_S = 5.0
+LOOK_UP_S = 1.0  # a signal that comes just before a system call that waits is seen only after it
+ENDING = (signal.SIGINT, signal.SIGTERM)
 tqdm.monitor_interval = 0  # its thread and forked processes do not go together
 FORK = multiprocessing.get_context("fork")  # children share the logs that are read already
+
+
+@contextlib.contextmanager
+def _no_signals() -> Iterator[None]:
+    """Ctrl-C and SIGTERM wait until the end."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _work(job: Job) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # ends the program that runs, on the way out
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
     try:
         execute(job)
     except Exception as error:  # whatever it is, it costs one run and is said
@@ -69,13 +83,14 @@ class Schedule:
                 continue
             process = FORK.Process(target=_work, args=(job,))
             job.result_path.unlink(missing_ok=True)
-            process.start()
-            self._running[process] = job
+            with _no_signals():  # a process that was started is known, or Ctrl-C would not end it
+                process.start()
+                self._running[process] = job
 
     def _collect(self) -> None:
         if not self._running:
             return
-        ready = wait([process.sentinel for process in self._running])
+        ready = wait([process.sentinel for process in self._running], LOOK_UP_S)
         for process in [process for process in self._running if process.sentinel in ready]:
             job = self._running.pop(process)
             process.join()

@@ -14,16 +14,13 @@ namespace {
 constexpr std::size_t kMembersUsed = 8;
 constexpr double kLoopLoss = 2.0;
 
-/// Between pieces that nothing joins: no scan sees so far.
-constexpr double kApart_m = 1e4;
-
 /// The chain's probabilities allow for scans of different places, which neighbours are not.
 constexpr double kPriorOfLinks = 2.0;
 
 /// The chain took its neighbours into account as well.
 constexpr double kAgainstChain = 3.0;
 
-bool agrees(const Pose2& off) { return off.translation().norm() < kAgrees_m && std::abs(off.theta_rad) < kAgrees_rad; }
+bool agrees(const Pose2& off) { return is_within(off, kAgrees_m, kAgrees_rad); }
 
 /// The best member of each node.
 std::vector<PoseConstraint> constraints_of(const LoopCluster& cluster) {
@@ -58,7 +55,7 @@ LoopChoice LoopProblem::undecided(std::vector<Pose2> map_from_node) const {
   LoopChoice choice;
   choice.link_choice.assign(links_.size(), kCut);
   choice.accepted.assign(clusters_.size(), 0);
-  choice.refused_off.assign(clusters_.size(), Pose2{kApart_m, kApart_m, 0.0});
+  choice.refused_off.assign(clusters_.size(), Pose2{kPiecesApart_m, kPiecesApart_m, 0.0});
   choice.map_from_node = std::move(map_from_node);
   return choice;
 }
@@ -71,7 +68,7 @@ LoopChoice LoopProblem::chain_alone() {
       choice.link_choice[i] = 0;
       choice.map_from_node[i + 1] = choice.map_from_node[i] * links_[i].alternatives.front().a_from_b;
     } else {
-      next_piece_m += kApart_m;
+      next_piece_m += kPiecesApart_m;
       choice.map_from_node[i + 1] = {next_piece_m, 0.0, 0.0};
     }
   }

@@ -10,14 +10,6 @@
 
 namespace shapemap {
 
-inline bool is_within(const Pose2& off, double metres, double radians) {
-  return off.translation().norm() < metres && std::abs(off.theta_rad) < radians;
-}
-
-/// A map that is farther than this off what a loop says contradicts it.
-inline constexpr double kContradicts_m = 1.0;
-inline constexpr double kContradicts_rad = 10 * kDegree;
-
 /// Per node: the first of those that what was decided joins it to.
 inline std::vector<std::size_t> pieces_of(const LoopProblem& problem, const LoopChoice& map) {
   return connected_parts(problem.num_nodes(), problem.constraints(map));

@@ -63,7 +63,7 @@ class Clustering {
     const Pose2 other_a_from_a = inverse(map_from_node_[other.a]) * map_from_node_[one.a];
     const Pose2 b_from_other_b = inverse(map_from_node_[one.b]) * map_from_node_[other.b];
     const Pose2 off = inverse(other.a_from_b) * (other_a_from_a * one.a_from_b * b_from_other_b);
-    return off.translation().norm() < options_.same_m && std::abs(off.theta_rad) < options_.same_rad;
+    return is_within(off, options_.same_m, options_.same_rad);
   }
 
   std::size_t root(std::size_t i) {

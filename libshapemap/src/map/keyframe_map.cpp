@@ -66,11 +66,9 @@ std::vector<PoseConstraint> loop_constraints(const std::vector<LoopCluster>& clu
 
 /// Whether the map is at all what a loop says: robust losses let all others outvote one that is wrong.
 bool is_closed(const LoopCluster& cluster, const std::vector<Pose2>& map_from_keyframe) {
-  constexpr double kFarOff_m = 1.0;
-  constexpr double kFarOff_rad = 10 * kDegree;
   const LoopHypothesis& best = cluster.members.front();
   const Pose2 off = inverse(best.a_from_b) * (inverse(map_from_keyframe[best.a]) * map_from_keyframe[best.b]);
-  return off.translation().norm() < kFarOff_m && std::abs(off.theta_rad) < kFarOff_rad;
+  return is_within(off, kContradicts_m, kContradicts_rad);
 }
 
 ClosedLoop closed_loop(const KeyframeChain& chain, const LoopCluster& cluster) {

@@ -29,10 +29,6 @@ constexpr double kMostOff_rad = 3 * kDegree;
 /// What a settled map says of two of its keyframes, as logarithm of odds.
 constexpr double kSettledLogOdds = 4.6;
 
-bool is_small(const Pose2& pose, double metres, double radians) {
-  return pose.translation().norm() < metres && std::abs(pose.theta_rad) < radians;
-}
-
 Pose2 between(const KeyframeMap& map, std::size_t a, std::size_t b) {
   return inverse(map.map_from_keyframe[a]) * map.map_from_keyframe[b];
 }
@@ -57,7 +53,7 @@ std::vector<std::vector<std::size_t>> earlier_at_place(const KeyframeMap& map, c
   std::vector<std::vector<std::pair<double, std::size_t>>> near(map.map_from_keyframe.size());
   for (const auto& [a, b] : near_pairs(map.map_from_keyframe, options.step_m)) {
     const Pose2 a_from_b = between(map, a, b);
-    if (map.component[a] != map.component[b] || !is_small(a_from_b, options.step_m, options.turn_rad)) continue;
+    if (map.component[a] != map.component[b] || !is_within(a_from_b, options.step_m, options.turn_rad)) continue;
     near[b].emplace_back(a_from_b.translation().norm(), a);
   }
   std::vector<std::vector<std::size_t>> earlier(near.size());
@@ -101,13 +97,13 @@ class Retirement {
       hypotheses.push_back(loop);
       hypotheses.back().a = number_[loop.a];
       hypotheses.back().b = number_[loop.b];
-      if (is_small(inverse(loop.a_from_b) * between(map_, loop.a, loop.b), kMostOff_m, kMostOff_rad)) {
+      if (is_within(inverse(loop.a_from_b) * between(map_, loop.a, loop.b), kMostOff_m, kMostOff_rad)) {
         pairs.insert({hypotheses.back().a, hypotheses.back().b});
       }
     }
     for (const PoseConstraint& constraint : map_.constraints) {
       const Pose2 as_in_map = between(map_, constraint.a, constraint.b);
-      if (!is_small(inverse(constraint.a_from_b) * as_in_map, kMostOff_m, kMostOff_rad)) continue;
+      if (!is_within(inverse(constraint.a_from_b) * as_in_map, kMostOff_m, kMostOff_rad)) continue;
       const auto [a, b] = std::minmax({kept_for(constraint.a), kept_for(constraint.b)});
       if (number_[b] - number_[a] < static_cast<std::size_t>(options_.loop_search.shortest_loop)) continue;
       if (!pairs.insert({number_[a], number_[b]}).second) continue;
@@ -187,7 +183,7 @@ std::vector<std::optional<StandIn>> find_stand_ins(const Log& log, const Keyfram
       const Pose2 expected = between(map, a, b);
       const PoseHypothesis pose =
           refined_hypothesis(*chain.keyframes[a].view, *chain.keyframes[b].view, expected, options.robust.search);
-      const bool is_as_in_map = is_small(inverse(expected) * pose.ref_from_query, kMostOff_m, kMostOff_rad);
+      const bool is_as_in_map = is_within(inverse(expected) * pose.ref_from_query, kMostOff_m, kMostOff_rad);
       if (is_as_in_map && can_stand_for(pose)) fitting[b].push_back({a, pose});
     }
   });

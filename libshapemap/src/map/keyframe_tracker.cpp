@@ -21,10 +21,6 @@ constexpr double kSure = 0.95;
 constexpr double kDense = 0.5;
 constexpr double kMemory = 0.97;
 
-bool is_small(const Pose2& step, double metres, double radians) {
-  return step.translation().norm() < metres && std::abs(step.theta_rad) < radians;
-}
-
 }  // namespace
 
 bool can_stand_for(const PoseHypothesis& pose) {
@@ -46,7 +42,7 @@ std::optional<PoseHypothesis> KeyframeTracker::follow(const ScanView& view) {
   if (attached_ > kDense) expected_ = last_ * step_;
   std::optional<PoseHypothesis> pose = followed(view);
   if (!pose && attached_ > kDense) pose = searched(view);
-  if (!pose || !is_small(pose->ref_from_query, options_.keyframes.step_m, options_.keyframes.turn_rad)) {
+  if (!pose || !is_within(pose->ref_from_query, options_.keyframes.step_m, options_.keyframes.turn_rad)) {
     step_ = {};
     return std::nullopt;
   }
@@ -64,7 +60,7 @@ std::optional<PoseHypothesis> KeyframeTracker::followed(const ScanView& view) co
     if (onward.score > best.score) best = std::move(onward);
   }
   const Pose2 step = inverse(last_) * best.ref_from_query;
-  if (!can_stand_for(best) || !is_small(step, kLongestStep_m, kLargestTurn_rad)) return std::nullopt;
+  if (!can_stand_for(best) || !is_within(step, kLongestStep_m, kLargestTurn_rad)) return std::nullopt;
   return best;
 }
 

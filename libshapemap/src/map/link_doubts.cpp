@@ -15,17 +15,10 @@
 namespace shapemap {
 namespace {
 
-/// Pieces that nothing joins lie so far apart: no scan sees so far.
-constexpr double kApart_m = 1e4;
-
 constexpr int kMoreEffort = 4;
 
 /// Some places look alike: a loop that is weaker than this does not vouch for what it joins.
 constexpr double kSureLoop = 18.0;
-
-/// A loop that the map is farther off is not closed.
-constexpr double kAgrees_m = 1.0;
-constexpr double kAgrees_rad = 10 * kDegree;
 
 /// Of a closed loop.
 const Eigen::Matrix3d kLoopCovariance = Eigen::Vector3d(0.01, 0.01, 0.0012).asDiagonal();
@@ -149,7 +142,7 @@ class LinkDoubts {
       const std::size_t a = keyframe_of(loop.a);
       const std::size_t b = keyframe_of(loop.b);
       const Pose2 off = inverse(loop.a_from_b) * (inverse(poses_[a]) * poses_[b]);
-      return piece_[a] != piece_[b] || off.translation().norm() > kAgrees_m || std::abs(off.theta_rad) > kAgrees_rad;
+      return piece_[a] != piece_[b] || !is_within(off, kContradicts_m, kContradicts_rad);
     };
     const auto end = std::remove_if(map_.loops.begin(), map_.loops.end(), is_contradicted);
     changed_ = changed_ || end != map_.loops.end();
@@ -233,7 +226,8 @@ class LinkDoubts {
   void part(const std::vector<PoseConstraint>& joined) {
     map_.component = connected_parts(views_.size(), joined);
     for (std::size_t n = 0; n < views_.size(); ++n) {
-      if (map_.component[n] > 0) map_.map_from_keyframe[n].x_m += kApart_m * static_cast<double>(map_.component[n]);
+      if (map_.component[n] > 0)
+        map_.map_from_keyframe[n].x_m += kPiecesApart_m * static_cast<double>(map_.component[n]);
     }
     const std::vector<bool> lone = lone_constraints(views_.size(), joined);
     std::size_t next = 0;

@@ -47,6 +47,11 @@ inline Pose2 inverse(const Pose2& b_from_a) {
   return {t.x(), t.y(), wrap_angle(-b_from_a.theta_rad)};
 }
 
+/// Whether a motion is shorter than `metres` and turns by less than `radians`.
+inline bool is_within(const Pose2& motion, double metres, double radians) {
+  return motion.translation().norm() < metres && std::abs(motion.theta_rad) < radians;
+}
+
 inline bool operator==(const Pose2& a, const Pose2& b) {
   return a.x_m == b.x_m && a.y_m == b.y_m && a.theta_rad == b.theta_rad;
 }
