@@ -3,28 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <utility>
 
-#include "keyframe_tracker.hpp"
-#include "shapemap/core/parallel_for.hpp"
 #include "shapemap/graph/loop_closing.hpp"
-#include "shapemap/graph/map_evidence.hpp"
 #include "shapemap/graph/path_covariance.hpp"
 
 namespace shapemap {
 namespace {
-
-/// A link this probable is as good as one that loops hold.
-constexpr double kSure = 0.97;
-
-/// Keyframes that the two are asked of, nearest first.
-constexpr std::size_t kTried = 3;
-
-/// The two scans must put each other where the map has them.
-constexpr double kMostOff_m = 0.25;
-constexpr double kMostOff_rad = 3 * kDegree;
 
 /// What a settled map says of two of its keyframes, as logarithm of odds.
 constexpr double kSettledLogOdds = 4.6;
@@ -33,43 +19,12 @@ Pose2 between(const KeyframeMap& map, std::size_t a, std::size_t b) {
   return inverse(map.map_from_keyframe[a]) * map.map_from_keyframe[b];
 }
 
-std::vector<bool> settled_keyframes(const Log& log, const KeyframeChain& chain, const KeyframeMap& map,
-                                    const MappingOptions& options) {
-  const std::size_t count = chain.keyframes.size();
-  std::vector<bool> sure(chain.links.size());
-  for (std::size_t i = 0; i < sure.size(); ++i) {
-    sure[i] = map.link_choice[i] != kCut &&
-              (map.held_by_loops[i] || link_probability(chain.links[i], options.robust.confidence) >= kSure);
-  }
-  std::vector<bool> settled(count, false);
-  for (std::size_t i = 1; i + kKeyframesInUse < count; ++i) {
-    settled[i] = sure[i - 1] && sure[i] && log.positions[chain.keyframes[i].position_index].sub_scans.size() == 1;
-  }
-  return settled;
-}
-
-/// For each keyframe the earlier ones at its place, nearest first.
-std::vector<std::vector<std::size_t>> earlier_at_place(const KeyframeMap& map, const KeyframeOptions& options) {
-  std::vector<std::vector<std::pair<double, std::size_t>>> near(map.map_from_keyframe.size());
-  for (const auto& [a, b] : near_pairs(map.map_from_keyframe, options.step_m)) {
-    const Pose2 a_from_b = between(map, a, b);
-    if (map.component[a] != map.component[b] || !is_within(a_from_b, options.step_m, options.turn_rad)) continue;
-    near[b].emplace_back(a_from_b.translation().norm(), a);
-  }
-  std::vector<std::vector<std::size_t>> earlier(near.size());
-  for (std::size_t b = 0; b < near.size(); ++b) {
-    std::sort(near[b].begin(), near[b].end());
-    for (const auto& [distance, a] : near[b]) earlier[b].push_back(a);
-  }
-  return earlier;
-}
-
 /// What becomes of a chain when keyframes are taken out of it.
 class Retirement {
  public:
-  Retirement(const std::vector<std::optional<StandIn>>& stand_ins, const KeyframeMap& map,
-             const MappingOptions& options, KeyframeChain& chain, LoopKnowledge& known)
-      : stand_ins_(stand_ins), map_(map), options_(options), chain_(chain), known_(known), number_(stand_ins.size()) {
+  Retirement(const std::vector<std::optional<StandIn>>& stand_ins, const MappingOptions& options, KeyframeMap& map,
+             KeyframeChain& chain, LoopKnowledge& known)
+      : stand_ins_(stand_ins), options_(options), map_(map), chain_(chain), known_(known), number_(stand_ins.size()) {
     for (std::size_t i = 0; i < stand_ins.size(); ++i) {
       number_[i] = kept_.size();
       if (!stand_ins[i]) kept_.push_back(i);
@@ -80,6 +35,7 @@ class Retirement {
     renew_loops();
     attach_scans();
     renew_chain();
+    renew_map();
   }
 
  private:
@@ -97,13 +53,13 @@ class Retirement {
       hypotheses.push_back(loop);
       hypotheses.back().a = number_[loop.a];
       hypotheses.back().b = number_[loop.b];
-      if (is_within(inverse(loop.a_from_b) * between(map_, loop.a, loop.b), kMostOff_m, kMostOff_rad)) {
+      if (is_within(inverse(loop.a_from_b) * between(map_, loop.a, loop.b), kAsInMap_m, kAsInMap_rad)) {
         pairs.insert({hypotheses.back().a, hypotheses.back().b});
       }
     }
     for (const PoseConstraint& constraint : map_.constraints) {
       const Pose2 as_in_map = between(map_, constraint.a, constraint.b);
-      if (!is_within(inverse(constraint.a_from_b) * as_in_map, kMostOff_m, kMostOff_rad)) continue;
+      if (!is_within(inverse(constraint.a_from_b) * as_in_map, kAsInMap_m, kAsInMap_rad)) continue;
       const auto [a, b] = std::minmax({kept_for(constraint.a), kept_for(constraint.b)});
       if (number_[b] - number_[a] < static_cast<std::size_t>(options_.loop_search.shortest_loop)) continue;
       if (!pairs.insert({number_[a], number_[b]}).second) continue;
@@ -160,9 +116,47 @@ class Retirement {
     return link;
   }
 
+  void renew_map() {
+    KeyframeMap renewed;
+    renewed.constraints = renewed_constraints();
+    for (std::size_t k = 0; k < kept_.size(); ++k) {
+      renewed.map_from_keyframe.push_back(map_.map_from_keyframe[kept_[k]]);
+      renewed.component.push_back(number_[kept_for(map_.component[kept_[k]])]);
+      if (k == 0) continue;
+      const std::size_t before = kept_[k - 1];
+      const bool are_neighbours = before + 1 == kept_[k];
+      renewed.link_choice.push_back(are_neighbours ? map_.link_choice[before] : 0);
+      renewed.held_by_loops.push_back(!are_neighbours || map_.held_by_loops[before]);
+      if (!are_neighbours) renewed.constraints.push_back(link_constraint(chain_, k - 1, 0));
+    }
+    renewed.loops = std::move(map_.loops);
+    map_ = std::move(renewed);
+  }
+
+  /// Of those that go, one for each pair of those that stand for them, and only where there is none.
+  std::vector<PoseConstraint> renewed_constraints() const {
+    std::vector<PoseConstraint> constraints;
+    std::set<std::pair<std::size_t, std::size_t>> pairs;
+    for (const bool of_kept : {true, false}) {
+      for (PoseConstraint constraint : map_.constraints) {
+        if ((is_kept(constraint.a) && is_kept(constraint.b)) != of_kept) continue;
+        const auto [a, b] = std::minmax({kept_for(constraint.a), kept_for(constraint.b)});
+        const bool is_new = pairs.insert({a, b}).second;
+        if (!of_kept) {
+          if (a == b || !is_new) continue;
+          constraint.a_from_b = between(map_, a, b);
+        }
+        constraint.a = number_[a];
+        constraint.b = number_[b];
+        constraints.push_back(constraint);
+      }
+    }
+    return constraints;
+  }
+
   const std::vector<std::optional<StandIn>>& stand_ins_;
-  const KeyframeMap& map_;
   const MappingOptions& options_;
+  KeyframeMap& map_;
   KeyframeChain& chain_;
   LoopKnowledge& known_;
   std::vector<std::size_t> kept_;    ///< the keyframes that stay
@@ -171,36 +165,9 @@ class Retirement {
 
 }  // namespace
 
-std::vector<std::optional<StandIn>> find_stand_ins(const Log& log, const KeyframeChain& chain, const KeyframeMap& map,
-                                                   const MappingOptions& options) {
-  const std::vector<bool> settled = settled_keyframes(log, chain, map, options);
-  const std::vector<std::vector<std::size_t>> earlier = earlier_at_place(map, options.keyframes);
-  std::vector<std::vector<StandIn>> fitting(settled.size());
-  parallel_for(settled.size(), options.chain.threads, [&](std::size_t b) {
-    if (!settled[b]) return;
-    for (const std::size_t a : earlier[b]) {
-      if (fitting[b].size() == kTried) break;
-      const Pose2 expected = between(map, a, b);
-      const PoseHypothesis pose =
-          refined_hypothesis(*chain.keyframes[a].view, *chain.keyframes[b].view, expected, options.robust.search);
-      const bool is_as_in_map = is_within(inverse(expected) * pose.ref_from_query, kMostOff_m, kMostOff_rad);
-      if (is_as_in_map && can_stand_for(pose)) fitting[b].push_back({a, pose});
-    }
-  });
-  std::vector<std::optional<StandIn>> stand_ins(settled.size());
-  for (std::size_t b = 0; b < settled.size(); ++b) {
-    for (const StandIn& candidate : fitting[b]) {
-      if (stand_ins[candidate.keyframe]) continue;  // it is not kept itself
-      stand_ins[b] = candidate;
-      break;
-    }
-  }
-  return stand_ins;
-}
-
-void retire_keyframes(const std::vector<std::optional<StandIn>>& stand_ins, const KeyframeMap& map,
-                      const MappingOptions& options, KeyframeChain& chain, LoopKnowledge& known) {
-  Retirement(stand_ins, map, options, chain, known).run();
+void retire_keyframes(const std::vector<std::optional<StandIn>>& stand_ins, const MappingOptions& options,
+                      KeyframeMap& map, KeyframeChain& chain, LoopKnowledge& known) {
+  Retirement(stand_ins, options, map, chain, known).run();
 }
 
 }  // namespace shapemap

@@ -10,6 +10,7 @@
 #include "link_doubts.hpp"
 #include "link_verdict.hpp"
 #include "loop_knowledge.hpp"
+#include "revisits.hpp"
 #include "robust_chain.hpp"
 #include "shapemap/core/errors.hpp"
 #include "sub_scan_poses.hpp"
@@ -97,7 +98,11 @@ class Finishing : public RunObserver {
   RunObserver& observer_;
 };
 
-/// Reads the log. When there are many keyframes, loops are closed, and those that are there twice let go.
+/// So many new keyframes are followed in the settled map at a time.
+constexpr std::size_t kFollowedAtOnce = 64;
+
+/// Reads the log. When there are many keyframes, loops are closed, and those that are there twice let go. From then on,
+/// those of places that are known again go soon; all is solved anew when there are many more.
 class Reading {
  public:
   Reading(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink, AlignmentStore* store,
@@ -108,15 +113,24 @@ class Reading {
         sink_(sink),
         store_(store),
         result_(result),
-        growth_(log, options, observer, sink, store, result) {}
+        growth_(log, options, observer, sink, store, result),
+        revisits_(log, options) {}
 
   void run() {
     const auto settle_at = std::max(static_cast<std::size_t>(options_.keyframes.settle_at), 4 * kKeyframesInUse);
     const bool settles = options_.loops.close_loops && options_.keyframes.settle_at > 0;
     std::size_t most = settles ? settle_at : std::numeric_limits<std::size_t>::max();
-    while (growth_.extend(most)) {
-      settle();
-      most = std::max(settle_at, 2 * chain().keyframes.size());
+    std::size_t next = most;
+    while (growth_.extend(next)) {
+      const auto start = std::chrono::steady_clock::now();
+      if (chain().keyframes.size() < most) {
+        follow();
+      } else {
+        settle();
+        most = std::max(settle_at, 2 * chain().keyframes.size());
+      }
+      next = std::min(most, chain().keyframes.size() + kFollowedAtOnce);
+      result_.times.loops_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
   }
 
@@ -125,18 +139,27 @@ class Reading {
 
  private:
   void settle() {
-    const auto start = std::chrono::steady_clock::now();
     find_loops(chain(), chain().keyframes.size() - kKeyframesInUse, options_, observer_, store_, known_);
     if (!observer_.keep_going()) return;
-    const KeyframeMap map = map_with_loops(chain(), known_.hypotheses, options_, observer_);
+    KeyframeMap map = map_with_loops(chain(), known_.hypotheses, options_, observer_);
     if (!observer_.keep_going()) return;
-    const std::vector<std::optional<StandIn>> stand_ins = find_stand_ins(log_, chain(), map, options_);
+    retire(find_stand_ins(log_, chain(), map, options_), map);
+    revisits_.start(chain(), map, chain().keyframes.size() - kKeyframesInUse);
+  }
+
+  void follow() {
+    Revisits::Followed followed = revisits_.follow(chain());
+    const std::size_t num_open = chain().keyframes.size() - followed.num_followed;
+    retire(followed.stand_ins, followed.map);
+    revisits_.renew(std::move(followed.map), num_open);
+  }
+
+  void retire(const std::vector<std::optional<StandIn>>& stand_ins, KeyframeMap& map) {
     for (std::size_t i = 0; i < chain().links.size(); ++i) {
       const bool stays = !stand_ins[i] && !stand_ins[i + 1];
       if (!stays && !chain().links[i].settled_covariance) judge(map, i);
     }
-    retire_keyframes(stand_ins, map, options_, chain(), known_);
-    result_.times.loops_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    retire_keyframes(stand_ins, options_, map, chain(), known_);
   }
 
   /// A link that goes has its verdict now.
@@ -152,6 +175,7 @@ class Reading {
   AlignmentStore* store_;
   MapResult& result_;
   RobustChain growth_;
+  Revisits revisits_;
   LoopKnowledge known_;
 };
 

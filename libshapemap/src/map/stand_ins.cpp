@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stand_ins.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "keyframe_tracker.hpp"
+#include "shapemap/core/parallel_for.hpp"
+#include "shapemap/graph/loop_closing.hpp"
+#include "shapemap/graph/map_evidence.hpp"
+
+namespace shapemap {
+namespace {
+
+/// Keyframes that the two are asked of, nearest first.
+constexpr std::size_t kTried = 3;
+
+/// For each keyframe the earlier ones at its place, nearest first.
+std::vector<std::vector<std::size_t>> earlier_at_place(const KeyframeMap& map, const KeyframeOptions& options) {
+  std::vector<std::vector<std::pair<double, std::size_t>>> near(map.map_from_keyframe.size());
+  for (const auto& [a, b] : near_pairs(map.map_from_keyframe, options.step_m)) {
+    const Pose2 a_from_b = inverse(map.map_from_keyframe[a]) * map.map_from_keyframe[b];
+    if (map.component[a] != map.component[b] || !is_within(a_from_b, options.step_m, options.turn_rad)) continue;
+    near[b].emplace_back(a_from_b.translation().norm(), a);
+  }
+  std::vector<std::vector<std::size_t>> earlier(near.size());
+  for (std::size_t b = 0; b < near.size(); ++b) {
+    std::sort(near[b].begin(), near[b].end());
+    for (const auto& [distance, a] : near[b]) earlier[b].push_back(a);
+  }
+  return earlier;
+}
+
+}  // namespace
+
+std::vector<StandIn> stand_ins_for(const KeyframeChain& chain, const std::vector<Pose2>& map_from_keyframe,
+                                   std::size_t b, const std::vector<std::size_t>& earlier, std::size_t most,
+                                   const MappingOptions& options) {
+  std::vector<StandIn> fitting;
+  for (const std::size_t a : earlier) {
+    if (fitting.size() == most) break;
+    const Pose2 expected = inverse(map_from_keyframe[a]) * map_from_keyframe[b];
+    const PoseHypothesis pose =
+        refined_hypothesis(*chain.keyframes[a].view, *chain.keyframes[b].view, expected, options.robust.search);
+    const bool is_as_in_map = is_within(inverse(expected) * pose.ref_from_query, kAsInMap_m, kAsInMap_rad);
+    if (is_as_in_map && can_stand_for(pose)) fitting.push_back({a, pose});
+  }
+  return fitting;
+}
+
+std::vector<bool> settled_keyframes(const Log& log, const KeyframeChain& chain, const KeyframeMap& map,
+                                    const MappingOptions& options) {
+  const std::size_t count = chain.keyframes.size();
+  std::vector<bool> sure(chain.links.size());
+  for (std::size_t i = 0; i < sure.size(); ++i) {
+    sure[i] = map.link_choice[i] != kCut &&
+              (map.held_by_loops[i] || link_probability(chain.links[i], options.robust.confidence) >= kSureLink);
+  }
+  std::vector<bool> settled(count, false);
+  for (std::size_t i = 1; i + kKeyframesInUse < count; ++i) {
+    settled[i] = sure[i - 1] && sure[i] && log.positions[chain.keyframes[i].position_index].sub_scans.size() == 1;
+  }
+  return settled;
+}
+
+std::vector<std::optional<StandIn>> find_stand_ins(const Log& log, const KeyframeChain& chain, const KeyframeMap& map,
+                                                   const MappingOptions& options) {
+  const std::vector<bool> settled = settled_keyframes(log, chain, map, options);
+  const std::vector<std::vector<std::size_t>> earlier = earlier_at_place(map, options.keyframes);
+  std::vector<std::vector<StandIn>> fitting(settled.size());
+  parallel_for(settled.size(), options.chain.threads, [&](std::size_t b) {
+    if (settled[b]) fitting[b] = stand_ins_for(chain, map.map_from_keyframe, b, earlier[b], kTried, options);
+  });
+  std::vector<std::optional<StandIn>> stand_ins(settled.size());
+  for (std::size_t b = 0; b < settled.size(); ++b) {
+    for (const StandIn& candidate : fitting[b]) {
+      if (stand_ins[candidate.keyframe]) continue;  // it is not kept itself
+      stand_ins[b] = candidate;
+      break;
+    }
+  }
+  return stand_ins;
+}
+
+}  // namespace shapemap

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "keyframe_chain.hpp"
+#include "keyframe_map.hpp"
+#include "shapemap/map/mapping_options.hpp"
+#include "shapemap/scan/scan.hpp"
+
+/// Where a place is visited again, the keyframes that it has are enough: so there are as many as the area needs, and
+/// not as the way was long.
+namespace shapemap {
+
+/// The last few keyframes are always kept: those to come are compared to them.
+inline constexpr std::size_t kKeyframesInUse = 16;
+
+/// A link this probable is as good as one that loops hold.
+inline constexpr double kSureLink = 0.97;
+
+/// Two scans of one place must put each other where the map has them.
+inline constexpr double kAsInMap_m = 0.25;
+inline constexpr double kAsInMap_rad = 3 * kDegree;
+
+/// An earlier keyframe that can stand for another.
+struct StandIn {
+  std::size_t keyframe = 0;
+  PoseHypothesis pose;  ///< of the other, in its frame
+};
+
+/// Those of `earlier`, in their order, that can stand for keyframe `b` where the map has the two; at most `most`.
+std::vector<StandIn> stand_ins_for(const KeyframeChain& chain, const std::vector<Pose2>& map_from_keyframe,
+                                   std::size_t b, const std::vector<std::size_t>& earlier, std::size_t most,
+                                   const MappingOptions& options);
+
+/// Per keyframe: whether it may go when another can stand for it. Those at doubtful links stay, those with several
+/// sub-scans, and the last few.
+std::vector<bool> settled_keyframes(const Log& log, const KeyframeChain& chain, const KeyframeMap& map,
+                                    const MappingOptions& options);
+
+/// Per keyframe: which one can stand for it, where one can and it may go.
+std::vector<std::optional<StandIn>> find_stand_ins(const Log& log, const KeyframeChain& chain, const KeyframeMap& map,
+                                                   const MappingOptions& options);
+
+}  // namespace shapemap

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "map/keyframe_map.hpp"
+#include "shapemap/map/mapping_options.hpp"
+#include "shapemap/scan/scan.hpp"
+#include "support/ring_walk.hpp"
+
+/// A log of a robot that goes round and round a ring, and chains that follow it.
+namespace shapemap::test {
+
+inline MappingOptions quick_mapping() {
+  MappingOptions options;
+  options.robust.search.hypotheses.rotation_peaks = 4;
+  options.robust.search.hypotheses.refined = 6;
+  options.robust.search.hypotheses.kept = 3;
+  options.robust.search.voting.peaks = 6;
+  options.loop_search.likely_places = 3;
+  options.keyframes.settle_at = 0;
+  options.chain.threads = 1;
+  return options;
+}
+
+struct Laps {
+  explicit Laps(std::size_t count) : truth(ring_walk(count, 4)) {
+    std::mt19937 rng(7);
+    for (const Pose2& pose : truth) log.positions.push_back(scan_of(ring_world(1), pose, full_circle(), rng));
+  }
+  std::vector<Pose2> truth;
+  Log log;
+};
+
+inline const Laps& two_laps() {
+  static const Laps laps(2 * kRingLap);
+  return laps;
+}
+
+/// A chain in which each keyframe is where `poses` have it, each link sure, and the map that follows.
+struct KnownChain {
+  KnownChain(const Laps& laps, const std::vector<Pose2>& poses) {
+    const MappingOptions options = quick_mapping();
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      auto view = std::make_shared<ScanView>(
+          view_of(laps.log.positions[i], options.returns, options.polylines, options.shape, options.robust.view));
+      chain.keyframes.push_back({i, std::move(view), {}});
+      if (i == 0) continue;
+      const Pose2 step = inverse(poses[i - 1]) * poses[i];
+      KeyframeLink link;
+      link.hypotheses = {
+          hypothesis_at(*chain.keyframes[i - 1].view, *chain.keyframes[i].view, step, options.robust.search)};
+      chain.links.push_back(std::move(link));
+      map.constraints.push_back(link_constraint(chain, i - 1, 0));
+    }
+    for (std::size_t i = 0; i + 2 < poses.size(); ++i) {
+      chain.links[i].bonus = no_bonus(chain.links[i], chain.links[i + 1]);
+    }
+    choose_hypotheses(chain);
+    map.map_from_keyframe = poses;
+    map.link_choice.assign(chain.links.size(), 0);
+    map.held_by_loops.assign(chain.links.size(), true);
+    map.component.assign(poses.size(), 0);
+  }
+  explicit KnownChain(const Laps& laps) : KnownChain(laps, laps.truth) {}
+
+  KeyframeChain chain;
+  KeyframeMap map;
+};
+
+}  // namespace shapemap::test

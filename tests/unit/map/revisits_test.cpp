@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Of a robot that goes round a ring once more: it knows the places of the first lap again.
+#include "map/revisits.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "map/keyframe_retirement.hpp"
+#include "shapemap/graph/loop_closing.hpp"
+#include "support/matchers.hpp"
+#include "support/ring_laps.hpp"
+
+namespace shapemap {
+namespace {
+
+using test::KnownChain;
+using test::Laps;
+using test::two_laps;
+
+constexpr std::size_t kSettled = test::kRingLap + 6;
+
+const MappingOptions& quick() {
+  static const MappingOptions options = test::quick_mapping();
+  return options;
+}
+
+/// What is followed after `num_settled` keyframes, whose part of the map is right.
+Revisits::Followed followed(const Laps& laps, const KnownChain& known, std::size_t num_settled = kSettled) {
+  Revisits revisits(laps.log, quick());
+  KeyframeMap map = known.map;
+  std::copy(laps.truth.begin(), laps.truth.begin() + static_cast<std::ptrdiff_t>(num_settled),
+            map.map_from_keyframe.begin());
+  revisits.start(known.chain, map, num_settled);
+  return revisits.follow(known.chain);
+}
+
+std::size_t num_known(const Revisits::Followed& followed, std::size_t first = 0) {
+  return static_cast<std::size_t>(std::count_if(followed.stand_ins.begin() + static_cast<std::ptrdiff_t>(first),
+                                                followed.stand_ins.end(), [](const auto& s) { return s.has_value(); }));
+}
+
+/// The poses of a robot whose each step is off by so much.
+std::vector<Pose2> drifting(const std::vector<Pose2>& truth, const Pose2& error) {
+  std::vector<Pose2> poses{truth.front()};
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    poses.push_back(poses.back() * (inverse(truth[i - 1]) * truth[i]) * error);
+  }
+  return poses;
+}
+
+/// The link to keyframe `b` is in doubt, and off by `error`.
+KnownChain doubtful_at(const Laps& laps, std::size_t b, const Pose2& error) {
+  std::vector<Pose2> poses = laps.truth;
+  for (std::size_t i = b; i < poses.size(); ++i) {
+    poses[i] = poses[b - 1] * error * (inverse(laps.truth[b - 1]) * laps.truth[i]);
+  }
+  KnownChain known(laps, poses);
+  known.chain.links[b - 1].choice.margin = 0.01;  // another place fits as well
+  return known;
+}
+
+TEST(Revisits, KnowThePlacesOfTheLapBefore) {
+  const Laps& laps = two_laps();
+  const Revisits::Followed result = followed(laps, KnownChain(laps));
+  ASSERT_EQ(result.stand_ins.size(), laps.truth.size());
+  EXPECT_EQ(result.num_followed, laps.truth.size() - kKeyframesInUse);
+  EXPECT_GT(num_known(result), (result.num_followed - kSettled) / 3);  // the robot sways by more than 20 degrees
+  EXPECT_EQ(num_known(result, result.num_followed), 0U);
+  for (std::size_t b = 0; b < laps.truth.size(); ++b) {
+    EXPECT_THAT(result.map.map_from_keyframe[b], test::IsNearPose(laps.truth[b], 0.10, 2 * kDegree)) << b;
+    if (!result.stand_ins[b]) continue;
+    const StandIn& stand_in = *result.stand_ins[b];
+    EXPECT_LT(stand_in.keyframe, kSettled);
+    EXPECT_THAT(result.map.map_from_keyframe[stand_in.keyframe] * stand_in.pose.ref_from_query,
+                test::IsNearPose(laps.truth[b], 0.08, 2 * kDegree));
+  }
+}
+
+TEST(Revisits, TakeTheErrorsOfTheChainAway) {
+  const Laps& laps = two_laps();
+  const Pose2 error{0.02, 0.01, 0.3 * kDegree};
+  const std::vector<Pose2> drifted = drifting(laps.truth, error);
+  const Revisits::Followed result = followed(laps, KnownChain(laps, drifted));
+  const std::size_t last = result.num_followed - 1;
+  const Pose2 chained = laps.truth[kSettled - 1] * inverse(drifted[kSettled - 1]) * drifted[last];
+  EXPECT_GT((chained.translation() - laps.truth[last].translation()).norm(), 0.5);
+  EXPECT_LT((result.map.map_from_keyframe[last].translation() - laps.truth[last].translation()).norm(), 0.2);
+  EXPECT_GT(num_known(result), 6U);
+}
+
+TEST(Revisits, BelieveADoubtfulLinkWhenWhatComesAfterIsWhereItWasExpected) {
+  const Laps& laps = two_laps();
+  constexpr std::size_t kDoubtful = kSettled + 4;
+  const KnownChain known = doubtful_at(laps, kDoubtful, {});
+  ASSERT_LT(link_probability(known.chain.links[kDoubtful - 1], {}), 0.6);
+  const Revisits::Followed result = followed(laps, known);
+  EXPECT_EQ(num_known(result), num_known(followed(laps, KnownChain(laps))));
+  EXPECT_TRUE(result.map.held_by_loops[kDoubtful - 1]);
+  EXPECT_EQ(result.map.component[result.num_followed - 1], 0U);
+}
+
+TEST(Revisits, KnowNothingAgainAfterAWrongLink) {
+  const Laps& laps = two_laps();
+  constexpr std::size_t kWrong = kSettled + 4;
+  const KnownChain known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
+  const Revisits::Followed result = followed(laps, known);
+  EXPECT_EQ(num_known(result, kWrong), 0U);
+  EXPECT_FALSE(result.map.held_by_loops[kWrong - 1]);
+  for (std::size_t b = kWrong; b < result.num_followed; ++b) EXPECT_NE(result.map.component[b], 0U) << b;
+}
+
+TEST(Revisits, KnowNothingAgainInAnotherLog) {
+  const Laps& laps = two_laps();
+  constexpr std::size_t kStart = kSettled + 4;
+  KnownChain known(laps);
+  known.chain.links[kStart - 1] = {};
+  known.chain.links[kStart - 2].bonus = no_bonus(known.chain.links[kStart - 2], known.chain.links[kStart - 1]);
+  known.chain.links[kStart - 1].bonus = no_bonus(known.chain.links[kStart - 1], known.chain.links[kStart]);
+  choose_hypotheses(known.chain);
+  const Revisits::Followed result = followed(laps, known);
+  EXPECT_EQ(result.map.link_choice[kStart - 1], kCut);
+  EXPECT_EQ(num_known(result, kStart), 0U);
+  for (std::size_t b = kStart; b < result.num_followed; ++b) EXPECT_NE(result.map.component[b], 0U) << b;
+}
+
+/// In small portions, with keyframes retired between, as the log is read.
+TEST(Revisits, GoOnWhereTheyWere) {
+  const Laps& laps = two_laps();
+  KnownChain all(laps);
+  KnownChain known(laps);
+  known.chain.keyframes.resize(kSettled + kKeyframesInUse);
+  known.chain.links.resize(kSettled + kKeyframesInUse - 1);
+  choose_hypotheses(known.chain);
+  KeyframeMap map = known.map;
+  map.map_from_keyframe.resize(known.chain.keyframes.size());
+  map.component.resize(known.chain.keyframes.size());
+  map.link_choice.resize(known.chain.links.size());
+  map.held_by_loops.resize(known.chain.links.size());
+  Revisits revisits(laps.log, quick());
+  revisits.start(known.chain, map, kSettled);
+  LoopKnowledge loops;
+  std::size_t num_retired = 0;
+  for (std::size_t next = kSettled + kKeyframesInUse; next < laps.truth.size(); next += 7) {
+    for (std::size_t i = next; i < std::min(next + 7, laps.truth.size()); ++i) {
+      known.chain.keyframes.push_back(all.chain.keyframes[i]);
+      known.chain.links.push_back(all.chain.links[i - 1]);
+    }
+    choose_hypotheses(known.chain);
+    Revisits::Followed result = revisits.follow(known.chain);
+    num_retired += num_known(result);
+    const std::size_t num_open = known.chain.keyframes.size() - result.num_followed;
+    retire_keyframes(result.stand_ins, quick(), result.map, known.chain, loops);
+    ASSERT_EQ(result.map.map_from_keyframe.size(), known.chain.keyframes.size());
+    for (std::size_t i = 0; i < known.chain.keyframes.size(); ++i) {
+      const Pose2& truth = laps.truth[known.chain.keyframes[i].position_index];
+      EXPECT_THAT(result.map.map_from_keyframe[i], test::IsNearPose(truth, 0.10, 2 * kDegree));
+    }
+    for (const PoseConstraint& constraint : result.map.constraints) {
+      const Pose2& a = laps.truth[known.chain.keyframes[constraint.a].position_index];
+      const Pose2& b = laps.truth[known.chain.keyframes[constraint.b].position_index];
+      EXPECT_THAT(constraint.a_from_b, test::IsNearPose(inverse(a) * b, 0.10, 2 * kDegree));
+    }
+    revisits.renew(std::move(result.map), num_open);
+  }
+  EXPECT_EQ(num_retired, num_known(followed(laps, all)));
+  EXPECT_EQ(known.chain.keyframes.size(), laps.truth.size() - num_retired);
+}
+
+}  // namespace
+}  // namespace shapemap
