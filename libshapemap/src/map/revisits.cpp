@@ -113,17 +113,22 @@ class Following {
     return nearest;
   }
 
-  /// What is between this one and the last that was known is held from both ends.
   void know(std::size_t b, StandIn stand_in) {
     map_.constraints.push_back(
         {stand_in.keyframe, b, stand_in.pose.ref_from_query, pose_covariance(stand_in.pose.fit), 0.0});
-    for (std::size_t i = last_known_; last_known_ != 0 && i < b; ++i) {
-      map_.held_by_loops[i] = true;
-      map_.component[i + 1] = home_;
-    }
+    hold_back_from(b);
     map_.component[b] = home_;
     last_known_ = b;
     stand_ins_[b] = std::move(stand_in);
+  }
+
+  /// What is between a keyframe that is known again and the last one that was is held from both ends.
+  void hold_back_from(std::size_t b) {
+    for (std::size_t i = b; i > last_known_ && map_.link_choice[i - 1] != kCut; --i) {
+      map_.held_by_loops[i - 1] = true;
+      map_.component[i] = home_;
+      if (last_known_ == 0 && map_.component[i - 1] == home_) break;
+    }
   }
 
   const KeyframeChain& chain_;
