@@ -13,6 +13,10 @@
 
 namespace shapemap {
 
+/// Where scans follow each other closely, the next one is usually so near to where it was to be expected.
+inline constexpr double kUsualSurprise_m = 0.4;
+inline constexpr double kUsualSurprise_rad = 25 * kDegree;
+
 /// A scan that others are aligned to.
 struct Keyframe {
   std::size_t position_index = 0;
@@ -44,7 +48,7 @@ struct KeyframeChain {
   std::vector<KeyframeLink> links;  ///< links[i] joins keyframe i to keyframe i + 1
 };
 
-/// What hypothesis number `k` of a link says.
+/// What hypothesis number `k` of a link says; where the next scan was expected there, it is held by that as well.
 PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std::size_t k);
 
 /// Of the hypothesis that the chain chose.

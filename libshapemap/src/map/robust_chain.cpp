@@ -32,11 +32,9 @@ double companion_score(const Visibility& v) {
 
 /// As logarithm of odds, of a scan that is so far off where it was expected.
 double surprise(const Pose2& off) {
-  constexpr double kUsual_m = 0.4;
-  constexpr double kUsual_rad = 25 * kDegree;
   constexpr double kMost = 4.0;
-  const double far = std::max(0.0, off.translation().norm() / kUsual_m - 1.0);
-  const double turned = std::max(0.0, std::abs(off.theta_rad) / kUsual_rad - 1.0);
+  const double far = std::max(0.0, off.translation().norm() / kUsualSurprise_m - 1.0);
+  const double turned = std::max(0.0, std::abs(off.theta_rad) / kUsualSurprise_rad - 1.0);
   return std::min(kMost, 2.0 * far) + std::min(kMost, 2.0 * turned);
 }
 

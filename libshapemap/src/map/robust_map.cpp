@@ -13,6 +13,7 @@
 #include "revisits.hpp"
 #include "robust_chain.hpp"
 #include "shapemap/core/errors.hpp"
+#include "steady_motion.hpp"
 #include "sub_scan_poses.hpp"
 
 namespace shapemap {
@@ -31,6 +32,7 @@ class Placing {
     for (Fragment& fragment : result_.fragments) {
       std::sort(fragment.positions.begin(), fragment.positions.end(),
                 [](const PlacedPosition& a, const PlacedPosition& b) { return a.position_index < b.position_index; });
+      steady_motion(log_, result_.positions, fragment.positions);
       const Pose2 first_from_map = inverse(fragment.positions.front().map_from_robot);
       for (PlacedPosition& placed : fragment.positions) placed.map_from_robot = first_from_map * placed.map_from_robot;
     }

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map/keyframe_chain.hpp"
+
+#include <gmock/gmock.h>
+
+#include "support/matchers.hpp"
+#include "support/ring_laps.hpp"
+
+namespace shapemap {
+namespace {
+
+/// A link that the scans do not hold along the way.
+KeyframeChain sliding_link() {
+  KeyframeChain chain =
+      test::KnownChain(test::two_laps(), {test::two_laps().truth[0], test::two_laps().truth[1]}).chain;
+  LineFit& fit = chain.links[0].hypotheses[0].fit;
+  fit.information = Eigen::Vector3d(0.0, 400.0, 400.0).asDiagonal();
+  fit.partners = 100;
+  fit.lever_m = 2.0;
+  return chain;
+}
+
+double deviation_m(const KeyframeChain& chain) { return std::sqrt(link_constraint(chain, 0, 0).covariance(0, 0)); }
+
+TEST(LinkConstraint, IsHeldByTheUsualMotionWhereTheScansSayLittle) {
+  KeyframeChain chain = sliding_link();
+  const Eigen::Matrix3d by_scans = link_constraint(chain, 0, 0).covariance;
+  EXPECT_GT(deviation_m(chain), 2.0);
+  const Pose2 pose = chain.links[0].hypotheses[0].ref_from_query;
+  chain.keyframes[1].expected = pose * Pose2{0.1, 0.0, 2 * kDegree};
+  const Eigen::Matrix3d by_both = link_constraint(chain, 0, 0).covariance;
+  EXPECT_NEAR(deviation_m(chain), kUsualSurprise_m, 0.01);
+  EXPECT_NEAR(by_both(1, 1), by_scans(1, 1), 0.02 * by_scans(1, 1));
+  EXPECT_NEAR(by_both(2, 2), by_scans(2, 2), 0.02 * by_scans(2, 2));
+  EXPECT_TRUE(by_both.isApprox(by_both.transpose()));
+  EXPECT_THAT(link_constraint(chain, 0, 0).a_from_b, test::HasSameBits(pose));
+}
+
+TEST(LinkConstraint, IsNotHeldByAMotionThatDidNotGoOn) {
+  KeyframeChain chain = sliding_link();
+  chain.keyframes[1].expected = chain.links[0].hypotheses[0].ref_from_query * Pose2{1.2, 0.0, 0.0};
+  EXPECT_GT(deviation_m(chain), 2.0);
+}
+
+TEST(LinkConstraint, OfASettledMapIsWhatTheMapSays) {
+  KeyframeChain chain = sliding_link();
+  chain.keyframes[1].expected = chain.links[0].hypotheses[0].ref_from_query;
+  chain.links[0].settled_covariance = Eigen::Matrix3d::Identity();
+  EXPECT_EQ(link_constraint(chain, 0, 0).covariance, Eigen::Matrix3d::Identity());
+}
+
+}  // namespace
+}  // namespace shapemap
