@@ -15,6 +15,9 @@ constexpr std::size_t kMostUnseen = 8;
 /// So many in a row that are where they were expected are no coincidence.
 constexpr std::size_t kWitnesses = 3;
 
+/// A link in doubt is judged by the next few keyframes.
+constexpr std::size_t kLookAhead = 8;
+
 /// Nearest first.
 constexpr std::size_t kTried = 3;
 
@@ -22,10 +25,15 @@ constexpr std::size_t kTried = 3;
 void add_links(const KeyframeChain& chain, KeyframeMap& map) {
   for (std::size_t i = map.link_choice.size(); i < chain.links.size(); ++i) {
     const KeyframeLink& link = chain.links[i];
-    const bool exists = !link.hypotheses.empty();
-    map.link_choice.push_back(exists ? static_cast<int>(link.choice.alternative) : kCut);
+    map.link_choice.push_back(link.hypotheses.empty() ? kCut : static_cast<int>(link.choice.alternative));
     map.held_by_loops.push_back(false);
-    if (exists) map.constraints.push_back(link_constraint(chain, i, link.choice.alternative));
+  }
+}
+
+void add_link_constraints(const KeyframeChain& chain, std::size_t first, KeyframeMap& map) {
+  for (std::size_t i = first; i < chain.links.size(); ++i) {
+    if (map.link_choice[i] == kCut) continue;
+    map.constraints.push_back(link_constraint(chain, i, static_cast<std::size_t>(map.link_choice[i])));
   }
 }
 
@@ -56,10 +64,40 @@ class Following {
         map_.map_from_keyframe[b - 1] * hypotheses[static_cast<std::size_t>(choice)].ref_from_query;
   }
 
+  /// Along keyframes up to `last`; returns where to go on next time: what only begins to be known again is looked at
+  /// anew then, and so is a link in doubt of which too little is known of what comes after.
+  std::size_t go(std::size_t first, std::size_t last) {
+    for (std::size_t b = first; b < last; ++b) {
+      if (!bearings_.is_lost && is_in_doubt(b)) {
+        if (b + kLookAhead > last) return b;
+        get_lost(b);
+        choose_by_what_follows(b);
+      }
+      step(b);
+    }
+    return witnesses_.empty() ? last : witnesses_.front().first;
+  }
+
+  const Bearings& bearings() const { return bearings_; }
+  std::vector<std::optional<StandIn>>& stand_ins() { return stand_ins_; }
+
+ private:
+  bool link_exists(std::size_t b) const { return map_.link_choice[b - 1] != kCut; }
+  bool is_in_doubt(std::size_t b) const {
+    return link_exists(b) && link_probability(chain_.links[b - 1], options_.robust.confidence) < kSureLink;
+  }
+
   void step(std::size_t b) {
     expect(b);
-    doubt_link(b);
-    std::vector<StandIn> found = stand_ins_for(chain_, map_.map_from_keyframe, b, earlier_at_place(b), 1, options_);
+    if (!link_exists(b)) {
+      get_lost(b);
+      lost_ = b;
+      last_known_ = 0;
+      witnesses_.clear();
+    } else if (is_in_doubt(b)) {
+      get_lost(b);
+    }
+    std::vector<StandIn> found = stand_ins_at(b);
     if (found.empty()) {
       witnesses_.clear();
       if (++bearings_.num_unseen > kMostUnseen) get_lost(b);
@@ -75,20 +113,32 @@ class Following {
     bearings_ = {};
   }
 
-  /// Where to go on next time: what only begins to be known again is looked at anew then.
-  std::size_t end(std::size_t last) const { return witnesses_.empty() ? last : witnesses_.front().first; }
-  const Bearings& bearings() const { return bearings_; }
-  std::vector<std::optional<StandIn>>& stand_ins() { return stand_ins_; }
+  /// The one alternative of the link to `b` after which several keyframes in a row are where they are expected. The
+  /// chain's own stays when there is none, or more than one.
+  void choose_by_what_follows(std::size_t b) {
+    const int chosen = map_.link_choice[b - 1];
+    std::vector<int> possible;
+    for (int k = 0; k < static_cast<int>(chain_.links[b - 1].hypotheses.size()); ++k) {
+      map_.link_choice[b - 1] = k;
+      if (is_known_after(b)) possible.push_back(k);
+    }
+    map_.link_choice[b - 1] = possible.size() == 1 ? possible.front() : chosen;
+  }
 
- private:
-  void doubt_link(std::size_t b) {
-    const bool exists = map_.link_choice[b - 1] != kCut;
-    if (exists && link_probability(chain_.links[b - 1], options_.robust.confidence) >= kSureLink) return;
-    get_lost(b);
-    if (exists) return;
-    lost_ = b;
-    last_known_ = 0;
-    witnesses_.clear();
+  bool is_known_after(std::size_t b) {
+    std::size_t in_a_row = 0;
+    for (std::size_t j = b; j < b + kLookAhead && link_exists(j) && in_a_row < kWitnesses; ++j) {
+      expect(j);
+      const std::vector<StandIn> found = stand_ins_at(j);
+      in_a_row = found.empty() ? 0 : in_a_row + 1;
+      if (found.empty()) continue;
+      map_.map_from_keyframe[j] = map_.map_from_keyframe[found.front().keyframe] * found.front().pose.ref_from_query;
+    }
+    return in_a_row == kWitnesses;
+  }
+
+  std::vector<StandIn> stand_ins_at(std::size_t b) const {
+    return stand_ins_for(chain_, map_.map_from_keyframe, b, earlier_at_place(b), 1, options_);
   }
 
   void get_lost(std::size_t b) {
@@ -97,10 +147,11 @@ class Following {
     lost_ = b;
   }
 
-  /// Of those that stay, the nearest to where `b` is expected.
+  /// Of those that stay, the nearest to where `b` is expected. When lost, those just before it are no witnesses.
   std::vector<std::size_t> earlier_at_place(std::size_t b) const {
+    const std::size_t end = bearings_.is_lost ? b - std::min(b, kKeyframesInUse) : b;
     std::vector<std::pair<double, std::size_t>> near;
-    for (std::size_t a = 0; a + kKeyframesInUse < b; ++a) {
+    for (std::size_t a = 0; a < end; ++a) {
       if (map_.component[a] != home_ || stand_ins_[a]) continue;
       const Pose2 a_from_b = inverse(map_.map_from_keyframe[a]) * map_.map_from_keyframe[b];
       if (is_within(a_from_b, options_.keyframes.step_m, options_.keyframes.turn_rad)) {
@@ -164,9 +215,9 @@ Revisits::Followed Revisits::follow(const KeyframeChain& chain) {
                        [](const Keyframe& k, std::size_t position) { return k.position_index < position; });
   const std::size_t home_component = result.map.component[static_cast<std::size_t>(home - chain.keyframes.begin())];
   Following following(chain, options_, home_component, first, bearings_, result.map);
-  for (std::size_t b = first; b < last; ++b) following.step(b);
-  for (std::size_t b = std::max(first, last); b < count; ++b) following.expect(b);
-  result.num_followed = following.end(std::max(first, last));
+  result.num_followed = following.go(first, std::max(first, last));
+  for (std::size_t b = result.num_followed; b < count; ++b) following.expect(b);
+  add_link_constraints(chain, first - 1, result.map);
   bearings_ = following.bearings();
   result.stand_ins = std::move(following.stand_ins());
   const std::vector<bool> may_go = settled_keyframes(log_, chain, result.map, options_);

@@ -100,6 +100,44 @@ TEST(Revisits, BelieveADoubtfulLinkWhenWhatComesAfterIsWhereItWasExpected) {
   EXPECT_EQ(result.map.component[result.num_followed - 1], 0U);
 }
 
+/// The chain took the wrong one of two alternatives.
+TEST(Revisits, TakeTheAlternativeAfterWhichPlacesAreKnownAgain) {
+  const Laps& laps = two_laps();
+  constexpr std::size_t kWrong = kSettled + 4;
+  KnownChain known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
+  std::vector<PoseHypothesis>& alternatives = known.chain.links[kWrong - 1].hypotheses;
+  alternatives.push_back(alternatives.front());
+  alternatives.back().ref_from_query = inverse(laps.truth[kWrong - 1]) * laps.truth[kWrong];
+  const Revisits::Followed result = followed(laps, known);
+  EXPECT_EQ(result.map.link_choice[kWrong - 1], 1);
+  EXPECT_TRUE(result.map.held_by_loops[kWrong - 1]);
+  EXPECT_EQ(num_known(result), num_known(followed(laps, KnownChain(laps))));
+  for (std::size_t b = 0; b < result.num_followed; ++b) {
+    EXPECT_THAT(result.map.map_from_keyframe[b], test::IsNearPose(laps.truth[b], 0.10, 2 * kDegree)) << b;
+  }
+  for (const PoseConstraint& constraint : result.map.constraints) {
+    const Pose2 truth = inverse(laps.truth[constraint.a]) * laps.truth[constraint.b];
+    if (constraint.b >= result.num_followed) continue;
+    EXPECT_THAT(constraint.a_from_b, test::IsNearPose(truth, 0.10, 2 * kDegree));
+  }
+}
+
+/// Two alternatives that go on alike tell nothing.
+TEST(Revisits, LeaveADoubtfulLinkThatNothingDecides) {
+  const Laps& laps = two_laps();
+  constexpr std::size_t kDoubtful = kSettled + 4;
+  KnownChain known = doubtful_at(laps, kDoubtful, {0.7, 0.0, 5 * kDegree});
+  std::vector<PoseHypothesis>& alternatives = known.chain.links[kDoubtful - 1].hypotheses;
+  for (const double off_m : {0.01, -0.01}) {
+    alternatives.push_back(alternatives.front());
+    alternatives.back().ref_from_query =
+        inverse(laps.truth[kDoubtful - 1]) * laps.truth[kDoubtful] * Pose2{off_m, 0.0, 0.0};
+  }
+  const Revisits::Followed result = followed(laps, known);
+  EXPECT_EQ(result.map.link_choice[kDoubtful - 1], 0);
+  EXPECT_EQ(num_known(result, kDoubtful), 0U);
+}
+
 TEST(Revisits, KnowNothingAgainAfterAWrongLink) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
