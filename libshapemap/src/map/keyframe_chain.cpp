@@ -10,7 +10,7 @@ namespace {
 /// A link that may be nothing is one choice as well.
 std::size_t num_choices(const KeyframeLink& link) { return std::max<std::size_t>(link.hypotheses.size(), 1); }
 
-/// Both what the scans tell and that the motion goes on as before: along a bare corridor, only that.
+/// Both what the scans tell and that the sensor cannot jump: along a bare corridor, only that.
 Eigen::Matrix3d with_usual_motion(const Eigen::Matrix3d& covariance) {
   const Eigen::Vector3d usual(kUsualSurprise_m, kUsualSurprise_m, kUsualSurprise_rad);
   const Eigen::Matrix3d motion = usual.cwiseAbs2().asDiagonal();
@@ -24,11 +24,9 @@ PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std
   const KeyframeLink& of = chain.links[link];
   const PoseHypothesis& pose = of.hypotheses[k];
   if (of.settled_covariance) return {link, link + 1, pose.ref_from_query, *of.settled_covariance, 0.0};
-  const std::optional<Pose2>& expected = chain.keyframes[link + 1].expected;
+  const bool is_expected = chain.keyframes[link + 1].expected.has_value();
   const Eigen::Matrix3d covariance = pose_covariance(pose.fit);
-  const bool is_usual =
-      expected && is_within(inverse(*expected) * pose.ref_from_query, kUsualSurprise_m, kUsualSurprise_rad);
-  return {link, link + 1, pose.ref_from_query, is_usual ? with_usual_motion(covariance) : covariance, 0.0};
+  return {link, link + 1, pose.ref_from_query, is_expected ? with_usual_motion(covariance) : covariance, 0.0};
 }
 
 double link_probability(const KeyframeLink& link, const ConfidenceOptions& options) {

@@ -48,7 +48,8 @@ struct KeyframeChain {
   std::vector<KeyframeLink> links;  ///< links[i] joins keyframe i to keyframe i + 1
 };
 
-/// What hypothesis number `k` of a link says; where the next scan was expected there, it is held by that as well.
+/// What hypothesis number `k` of a link says. Where scans follow each other closely it is held at least as well as a
+/// motion is usually known before, whichever hypothesis: none must be taken for being held less.
 PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std::size_t k);
 
 /// Of the hypothesis that the chain chose.
