@@ -7,20 +7,16 @@
 
 #include "keyframe_chain.hpp"
 #include "keyframe_map.hpp"
+#include "map_follower.hpp"
 #include "shapemap/map/mapping_options.hpp"
 #include "stand_ins.hpp"
 
 namespace shapemap {
 
-/// How sure the robot is of where it is.
-struct Bearings {
-  bool is_lost = false;
-  std::size_t num_unseen = 0;  ///< keyframes since one was known again
-};
-
 /// Follows the chain from the end of a settled map on, and knows places again that have a keyframe: where the robot is
 /// sure to be in the map, no more needs to be solved for that. Where it is not, as after an alignment in doubt or a
-/// long way past places that are new, it is sure again when several keyframes in a row are where they were expected.
+/// long way past places that are new, it is sure again when several keyframes in a row are where they were expected, or
+/// when it is found by searching all of the map.
 class Revisits {
  public:
   Revisits(const Log& log, const MappingOptions& options) : log_(log), options_(options) {}

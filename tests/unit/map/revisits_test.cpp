@@ -141,11 +141,37 @@ TEST(Revisits, LeaveADoubtfulLinkThatNothingDecides) {
 TEST(Revisits, KnowNothingAgainAfterAWrongLink) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
-  const KnownChain known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
+  KnownChain known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
+  known.chain.keyframes.resize(kWrong + 30);  // too few to search for the place
+  known.chain.links.resize(kWrong + 29);
+  KeyframeMap& map = known.map;
+  map.map_from_keyframe.resize(kWrong + 30);
+  map.component.resize(kWrong + 30);
   const Revisits::Followed result = followed(laps, known);
   EXPECT_EQ(num_known(result, kWrong), 0U);
   EXPECT_FALSE(result.map.held_by_loops[kWrong - 1]);
   for (std::size_t b = kWrong; b < result.num_followed; ++b) EXPECT_NE(result.map.component[b], 0U) << b;
+}
+
+TEST(Revisits, FindThePlaceAgainBySearching) {
+  static const Laps laps(2 * test::kRingLap + 30);
+  constexpr std::size_t kWrong = kSettled + 4;
+  const Revisits::Followed result = followed(laps, doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}));
+  const auto first = std::find_if(result.stand_ins.begin() + kWrong, result.stand_ins.end(),
+                                  [](const auto& stand_in) { return stand_in.has_value(); });
+  ASSERT_NE(first, result.stand_ins.end());
+  EXPECT_GT(num_known(result, kWrong), 3U);
+  const auto found = static_cast<std::size_t>(first - result.stand_ins.begin());
+  std::size_t num_cut = 0;
+  for (std::size_t b = kWrong; b < result.num_followed; ++b) {
+    if (result.map.component[b] == 0) {
+      EXPECT_THAT(result.map.map_from_keyframe[b], test::IsNearPose(laps.truth[b], 0.15, 3 * kDegree)) << b;
+    } else {
+      EXPECT_LT(b, found) << "lost again";
+    }
+    num_cut += result.map.link_choice[b - 1] == kCut ? 1U : 0U;
+  }
+  EXPECT_EQ(num_cut, 1U) << "between the way that was wrong and the place";
 }
 
 TEST(Revisits, KnowNothingAgainInAnotherLog) {
