@@ -28,7 +28,8 @@ inline MappingOptions quick_mapping() {
 }
 
 struct Laps {
-  explicit Laps(std::size_t count) : truth(ring_walk(count, 4)) {
+  explicit Laps(std::size_t count) : Laps(ring_walk(count, 4)) {}
+  explicit Laps(std::vector<Pose2> poses) : truth(std::move(poses)) {
     std::mt19937 rng(7);
     for (const Pose2& pose : truth) log.positions.push_back(scan_of(ring_world(1), pose, full_circle(), rng));
   }

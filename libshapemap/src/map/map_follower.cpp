@@ -20,7 +20,7 @@ constexpr std::size_t kWitnesses = 3;
 /// A link in doubt, and a place that was searched for, are judged by the next few keyframes.
 constexpr std::size_t kLookAhead = 8;
 
-/// A place that was searched for may look like another: more of these must be known, and nowhere else.
+/// Of these, when it may be the right one.
 constexpr std::size_t kKnownWhenFound = 6;
 
 /// Who is lost searches after so many keyframes, and again.
@@ -52,7 +52,8 @@ std::size_t MapFollower::go(std::size_t first, std::size_t last) {
     }
     const bool searches = bearings_.is_lost && !bearings_.may_be_elsewhere && can_look_ahead &&
                           bearings_.num_unseen > 0 && bearings_.num_unseen % kSearchEvery == 0;
-    if (!searches || !find_again(b)) step(b);
+    if (searches) bearings_.num_found = is_known_somewhere(b) ? bearings_.num_found + 1 : 0;
+    step(b);
   }
   return witnesses_.empty() ? last : witnesses_.front().first;
 }
@@ -155,36 +156,18 @@ std::size_t MapFollower::num_known_from(std::size_t b, std::size_t in_a_row) {
   return row == in_a_row ? in_a_row : known;
 }
 
-/// Searches all of the map for `b`. When it is found, the link to it is cut: the way since the robot got lost is wrong.
-bool MapFollower::find_again(std::size_t b) {
+/// Whether there is a place in the map from which on the robot may have gone as it did.
+bool MapFollower::is_known_somewhere(std::size_t b) {
   NodeViews views = views_of(chain_);
   views.resize(b + 1);
   RunObserver nobody;
   const std::vector<LoopHypothesis> places =
       likely_loops(views, b, options_.robust.search, options_.loop_search, options_.chain.threads, nobody);
-  std::vector<Pose2> found;
-  for (const LoopHypothesis& place : places) {
-    if (map_.component[place.a] != home_ || stand_ins_[place.a]) continue;
+  return std::any_of(places.begin(), places.end(), [&](const LoopHypothesis& place) {
+    if (map_.component[place.a] != home_ || stand_ins_[place.a]) return false;
     map_.map_from_keyframe[b] = map_.map_from_keyframe[place.a] * place.a_from_b;
-    if (num_known_from(b, kLookAhead) < kKnownWhenFound) continue;
-    const Pose2& there = map_.map_from_keyframe[b];
-    const auto is_there = [&](const Pose2& other) {
-      return is_within(inverse(other) * there, kAsInMap_m, kAsInMap_rad);
-    };
-    if (std::none_of(found.begin(), found.end(), is_there)) found.push_back(there);
-  }
-  if (found.size() != 1) return false;
-  map_.map_from_keyframe[b] = found.front();
-  map_.link_choice[b - 1] = kCut;
-  map_.component[b] = home_;
-  for (const StandIn& stand_in : stand_ins_at(b)) {
-    map_.constraints.push_back(
-        {stand_in.keyframe, b, stand_in.pose.ref_from_query, pose_covariance(stand_in.pose.fit), 0.0});
-  }
-  witnesses_.clear();
-  last_known_ = b;
-  bearings_ = {};
-  return true;
+    return num_known_from(b, kLookAhead) >= kKnownWhenFound;
+  });
 }
 
 std::vector<StandIn> MapFollower::stand_ins_at(std::size_t b) const {

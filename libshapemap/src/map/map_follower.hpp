@@ -18,6 +18,7 @@ struct Bearings {
   bool is_lost = false;
   bool may_be_elsewhere = false;  ///< as in another log: only strong loops tell whether it is the same place at all
   std::size_t num_unseen = 0;     ///< keyframes since one was known again
+  std::size_t num_found = 0;      ///< searches in a row that found some place in the map
 };
 
 /// Goes along keyframes that are new to a map, puts them in their places there, and tells which it knows again.
@@ -49,7 +50,7 @@ class MapFollower {
 
   void choose_by_what_follows(std::size_t b);
   std::size_t num_known_from(std::size_t b, std::size_t in_a_row);
-  bool find_again(std::size_t b);
+  bool is_known_somewhere(std::size_t b);
 
   std::vector<StandIn> stand_ins_at(std::size_t b) const;
   std::vector<std::size_t> earlier_at_place(std::size_t b) const;

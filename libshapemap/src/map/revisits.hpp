@@ -30,6 +30,7 @@ class Revisits {
     KeyframeMap map;
     std::vector<std::optional<StandIn>> stand_ins;  ///< per keyframe: of those that may go
     std::size_t num_followed = 0;                   ///< the keyframes after the first so many may still change
+    bool may_be_back = false;                       ///< in the map, where it was not expected
   };
   Followed follow(const KeyframeChain& chain);
 

@@ -125,9 +125,8 @@ class Reading {
     std::size_t next = most;
     while (growth_.extend(next)) {
       const auto start = std::chrono::steady_clock::now();
-      if (chain().keyframes.size() < most) {
-        follow();
-      } else {
+      const bool is_full = chain().keyframes.size() >= most;
+      if (is_full || follow()) {
         settle();
         most = std::max(settle_at, 2 * chain().keyframes.size());
       }
@@ -149,11 +148,13 @@ class Reading {
     revisits_.start(chain(), map, chain().keyframes.size() - kKeyframesInUse);
   }
 
-  void follow() {
+  /// Whether it takes settling to tell where the robot is.
+  bool follow() {
     Revisits::Followed followed = revisits_.follow(chain());
     const std::size_t num_open = chain().keyframes.size() - followed.num_followed;
     retire(followed.stand_ins, followed.map);
     revisits_.renew(std::move(followed.map), num_open);
+    return followed.may_be_back;
   }
 
   void retire(const std::vector<std::optional<StandIn>>& stand_ins, KeyframeMap& map) {

@@ -142,7 +142,7 @@ TEST(Revisits, KnowNothingAgainAfterAWrongLink) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
   KnownChain known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
-  known.chain.keyframes.resize(kWrong + 30);  // too few to search for the place
+  known.chain.keyframes.resize(kWrong + 30);  // too few to search for them
   known.chain.links.resize(kWrong + 29);
   KeyframeMap& map = known.map;
   map.map_from_keyframe.resize(kWrong + 30);
@@ -153,25 +153,18 @@ TEST(Revisits, KnowNothingAgainAfterAWrongLink) {
   for (std::size_t b = kWrong; b < result.num_followed; ++b) EXPECT_NE(result.map.component[b], 0U) << b;
 }
 
-TEST(Revisits, FindThePlaceAgainBySearching) {
-  static const Laps laps(2 * test::kRingLap + 30);
+TEST(Revisits, TellThatTheyMayBeBackElsewhereThanExpected) {
+  std::vector<Pose2> poses;  // steadily ahead, so that most are known again
+  std::mt19937 rng(5);
+  for (std::size_t i = 0; i < 2 * test::kRingLap + 40; ++i) {
+    poses.push_back(test::on_ring(test::kRingStep_m * static_cast<double>(i)) * test::random_pose(rng, 0.05, 0.05));
+  }
+  const Laps laps(poses);
   constexpr std::size_t kWrong = kSettled + 4;
   const Revisits::Followed result = followed(laps, doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}));
-  const auto first = std::find_if(result.stand_ins.begin() + kWrong, result.stand_ins.end(),
-                                  [](const auto& stand_in) { return stand_in.has_value(); });
-  ASSERT_NE(first, result.stand_ins.end());
-  EXPECT_GT(num_known(result, kWrong), 3U);
-  const auto found = static_cast<std::size_t>(first - result.stand_ins.begin());
-  std::size_t num_cut = 0;
-  for (std::size_t b = kWrong; b < result.num_followed; ++b) {
-    if (result.map.component[b] == 0) {
-      EXPECT_THAT(result.map.map_from_keyframe[b], test::IsNearPose(laps.truth[b], 0.15, 3 * kDegree)) << b;
-    } else {
-      EXPECT_LT(b, found) << "lost again";
-    }
-    num_cut += result.map.link_choice[b - 1] == kCut ? 1U : 0U;
-  }
-  EXPECT_EQ(num_cut, 1U) << "between the way that was wrong and the place";
+  EXPECT_TRUE(result.may_be_back);
+  EXPECT_EQ(num_known(result, kWrong), 0U) << "places look alike";
+  EXPECT_FALSE(followed(laps, KnownChain(laps)).may_be_back);
 }
 
 TEST(Revisits, KnowNothingAgainInAnotherLog) {
