@@ -2,6 +2,7 @@
 #include "map_follower.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "loop_knowledge.hpp"
 #include "shapemap/core/observer.hpp"
@@ -14,14 +15,18 @@ namespace {
 /// Past more keyframes of new places, errors may have added up.
 constexpr std::size_t kMostUnseen = 8;
 
-/// So many in a row that are where they were expected are no coincidence.
+/// So many in a row that are where they were expected are no coincidence where errors have only added up.
 constexpr std::size_t kWitnesses = 3;
 
-/// A link in doubt, and a place that was searched for, are judged by the next few keyframes.
-constexpr std::size_t kLookAhead = 8;
+/// After a link in doubt the robot may be at a place that looks alike: a few of a row of rooms do for a while.
+constexpr std::size_t kWitnessesAfterDoubt = 8;
+constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
 
-/// Of these, when it may be the right one.
-constexpr std::size_t kKnownWhenFound = 6;
+/// A link in doubt, and a place that was searched for, are judged by the next few keyframes.
+constexpr std::size_t kLookAhead = 12;
+
+/// And of these so many in a row are known where it may be the right one.
+constexpr std::size_t kInARowWhenFound = 5;
 
 /// Who is lost searches after so many keyframes, and again.
 constexpr std::size_t kSearchEvery = 16;
@@ -47,7 +52,7 @@ std::size_t MapFollower::go(std::size_t first, std::size_t last) {
     const bool can_look_ahead = b + kLookAhead <= last;
     if (!bearings_.is_lost && is_in_doubt(b)) {
       if (!can_look_ahead) return b;
-      get_lost(b);
+      get_lost(b, kWitnessesAfterDoubt);
       choose_by_what_follows(b);
     }
     const bool searches = bearings_.is_lost && !bearings_.may_be_elsewhere && can_look_ahead &&
@@ -78,31 +83,32 @@ bool MapFollower::is_in_doubt(std::size_t b) const {
 void MapFollower::step(std::size_t b) {
   expect(b);
   if (!link_exists(b)) {
-    get_lost(b);
+    get_lost(b, kNever);
     bearings_.may_be_elsewhere = true;
     lost_ = b;
     last_known_ = 0;
     witnesses_.clear();
   } else if (is_in_doubt(b)) {
-    get_lost(b);
+    get_lost(b, kWitnessesAfterDoubt);
   }
   std::vector<StandIn> found = stand_ins_at(b);
   if (found.empty()) {
     witnesses_.clear();
-    if (++bearings_.num_unseen > kMostUnseen) get_lost(b);
+    if (++bearings_.num_unseen > kMostUnseen) get_lost(b, kWitnesses);
     map_.component[b] = bearings_.is_lost ? lost_ : home_;
     return;
   }
   map_.map_from_keyframe[b] = map_.map_from_keyframe[found.front().keyframe] * found.front().pose.ref_from_query;
   map_.component[b] = bearings_.is_lost ? lost_ : home_;
   witnesses_.emplace_back(b, std::move(found.front()));
-  if (bearings_.is_lost && witnesses_.size() < kWitnesses) return;
+  if (bearings_.is_lost && witnesses_.size() < bearings_.witnesses_needed) return;
   for (auto& [keyframe, stand_in] : witnesses_) know(keyframe, std::move(stand_in));
   witnesses_.clear();
   bearings_ = {};
 }
 
-void MapFollower::get_lost(std::size_t b) {
+void MapFollower::get_lost(std::size_t b, std::size_t witnesses_needed) {
+  bearings_.witnesses_needed = std::max(bearings_.witnesses_needed, witnesses_needed);
   if (bearings_.is_lost) return;
   bearings_.is_lost = true;
   lost_ = b;
@@ -126,34 +132,37 @@ void MapFollower::hold_back_from(std::size_t b) {
   }
 }
 
-/// The one alternative of the link to `b` after which several keyframes in a row are where they are expected. The
-/// chain's own stays when there is none, or more than one.
+/// The alternative of the link to `b` after which what follows is known again, where there is but one that some of it
+/// is known after: when there are more, only settling tells.
 void MapFollower::choose_by_what_follows(std::size_t b) {
   const int chosen = map_.link_choice[b - 1];
-  std::vector<int> possible;
+  int sure = chosen;
+  std::size_t num_possible = 0;
   for (int k = 0; k < static_cast<int>(chain_.links[b - 1].hypotheses.size()); ++k) {
     map_.link_choice[b - 1] = k;
     expect(b);
-    if (num_known_from(b, kWitnesses) >= kWitnesses) possible.push_back(k);
+    const std::size_t in_a_row = longest_known_from(b);
+    if (in_a_row >= kWitnesses) ++num_possible;
+    if (in_a_row >= kWitnessesAfterDoubt) sure = k;
   }
-  map_.link_choice[b - 1] = possible.size() == 1 ? possible.front() : chosen;
+  map_.link_choice[b - 1] = num_possible == 1 ? sure : chosen;
+  if (num_possible > 1) bearings_.witnesses_needed = kNever;
 }
 
-/// Of the keyframes from `b`, which is where it may be, those that are known where they are then expected. Stops when
-/// so many in a row are.
-std::size_t MapFollower::num_known_from(std::size_t b, std::size_t in_a_row) {
-  std::size_t known = 0;
-  std::size_t row = 0;
-  for (std::size_t j = b; j < b + kLookAhead && row < in_a_row; ++j) {
+/// Of the keyframes from `b`, which is where it may be: the most in a row that are known where they are then expected.
+std::size_t MapFollower::longest_known_from(std::size_t b) {
+  std::size_t longest = 0;
+  std::size_t in_a_row = 0;
+  for (std::size_t j = b; j < b + kLookAhead; ++j) {
     if (j > b && !link_exists(j)) break;
     if (j > b) expect(j);
     const std::vector<StandIn> found = stand_ins_at(j);
-    row = found.empty() ? 0 : row + 1;
+    in_a_row = found.empty() ? 0 : in_a_row + 1;
+    longest = std::max(longest, in_a_row);
     if (found.empty()) continue;
-    ++known;
     map_.map_from_keyframe[j] = map_.map_from_keyframe[found.front().keyframe] * found.front().pose.ref_from_query;
   }
-  return row == in_a_row ? in_a_row : known;
+  return longest;
 }
 
 /// Whether there is a place in the map from which on the robot may have gone as it did.
@@ -166,7 +175,7 @@ bool MapFollower::is_known_somewhere(std::size_t b) {
   return std::any_of(places.begin(), places.end(), [&](const LoopHypothesis& place) {
     if (map_.component[place.a] != home_ || stand_ins_[place.a]) return false;
     map_.map_from_keyframe[b] = map_.map_from_keyframe[place.a] * place.a_from_b;
-    return num_known_from(b, kLookAhead) >= kKnownWhenFound;
+    return longest_known_from(b) >= kInARowWhenFound;
   });
 }
 
