@@ -2,7 +2,6 @@
 #include "map_follower.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "loop_knowledge.hpp"
 #include "shapemap/core/observer.hpp"
@@ -18,21 +17,41 @@ constexpr std::size_t kMostUnseen = 8;
 /// So many in a row that are where they were expected are no coincidence where errors have only added up.
 constexpr std::size_t kWitnesses = 3;
 
-/// After a link in doubt the robot may be at a place that looks alike: a few of a row of rooms do for a while.
-constexpr std::size_t kWitnessesAfterDoubt = 8;
-constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
-
-/// A link in doubt, and a place that was searched for, are judged by the next few keyframes.
-constexpr std::size_t kLookAhead = 12;
-
-/// And of these so many in a row are known where it may be the right one.
-constexpr std::size_t kInARowWhenFound = 5;
+/// Whether the robot is at a place or at one that looks alike, as one of a row of rooms does for a while, is judged by
+/// the next so many keyframes: all but a few are known at the right place, and fewer than half at others.
+constexpr std::size_t kLookAhead = 24;
+constexpr std::size_t kMostUnknown = 4;
+constexpr std::size_t kRival = 12;
 
 /// Who is lost searches after so many keyframes, and again.
 constexpr std::size_t kSearchEvery = 16;
 
 /// Nearest first.
 constexpr std::size_t kTried = 3;
+
+/// Which of several places it is.
+class PlaceChoice {
+ public:
+  /// True when it is the best so far.
+  bool add(const Pose2& place, std::size_t num_known) {
+    const bool is_first = num_known_ == 0 && num_known > 0;
+    const bool is_same = !is_first && is_within(inverse(best_) * place, kAsInMap_m, kAsInMap_rad);
+    const bool is_better = num_known > num_known_;
+    if (!is_same) num_rival_ = std::max(num_rival_, is_better ? num_known_ : num_known);
+    if (!is_better) return false;
+    best_ = place;
+    num_known_ = num_known;
+    return true;
+  }
+
+  bool is_sure() const { return num_known_ + kMostUnknown >= kLookAhead && num_rival_ < kRival; }
+  const Pose2& best() const { return best_; }
+
+ private:
+  Pose2 best_;
+  std::size_t num_known_ = 0;
+  std::size_t num_rival_ = 0;
+};
 
 }  // namespace
 
@@ -49,15 +68,12 @@ MapFollower::MapFollower(const KeyframeChain& chain, const MappingOptions& optio
 
 std::size_t MapFollower::go(std::size_t first, std::size_t last) {
   for (std::size_t b = first; b < last; ++b) {
-    const bool can_look_ahead = b + kLookAhead <= last;
-    if (!bearings_.is_lost && is_in_doubt(b)) {
-      if (!can_look_ahead) return b;
-      get_lost(b, kWitnessesAfterDoubt);
-      choose_by_what_follows(b);
-    }
-    const bool searches = bearings_.is_lost && !bearings_.may_be_elsewhere && can_look_ahead &&
-                          bearings_.num_unseen > 0 && bearings_.num_unseen % kSearchEvery == 0;
-    if (searches) bearings_.num_found = is_known_somewhere(b) ? bearings_.num_found + 1 : 0;
+    const bool doubts = is_in_doubt(b);
+    const bool searches = bearings_.is_lost && !bearings_.may_be_elsewhere && bearings_.num_unseen > 0 &&
+                          bearings_.num_unseen % kSearchEvery == 0;
+    if ((searches || (doubts && !bearings_.is_lost)) && b + kLookAhead > last) return b;
+    if (searches && find_again(b)) continue;
+    if (doubts) doubt_link(b);
     step(b);
   }
   return witnesses_.empty() ? last : witnesses_.front().first;
@@ -83,32 +99,30 @@ bool MapFollower::is_in_doubt(std::size_t b) const {
 void MapFollower::step(std::size_t b) {
   expect(b);
   if (!link_exists(b)) {
-    get_lost(b, kNever);
-    bearings_.may_be_elsewhere = true;
+    get_lost(b);
+    bearings_.may_be_elsewhere = bearings_.is_in_doubt = true;
     lost_ = b;
     last_known_ = 0;
     witnesses_.clear();
-  } else if (is_in_doubt(b)) {
-    get_lost(b, kWitnessesAfterDoubt);
   }
-  std::vector<StandIn> found = stand_ins_at(b);
+  std::vector<StandIn> found;
+  if (!bearings_.is_in_doubt) found = stand_ins_at(b);
   if (found.empty()) {
     witnesses_.clear();
-    if (++bearings_.num_unseen > kMostUnseen) get_lost(b, kWitnesses);
+    if (++bearings_.num_unseen > kMostUnseen) get_lost(b);
     map_.component[b] = bearings_.is_lost ? lost_ : home_;
     return;
   }
   map_.map_from_keyframe[b] = map_.map_from_keyframe[found.front().keyframe] * found.front().pose.ref_from_query;
   map_.component[b] = bearings_.is_lost ? lost_ : home_;
   witnesses_.emplace_back(b, std::move(found.front()));
-  if (bearings_.is_lost && witnesses_.size() < bearings_.witnesses_needed) return;
+  if (bearings_.is_lost && witnesses_.size() < kWitnesses) return;
   for (auto& [keyframe, stand_in] : witnesses_) know(keyframe, std::move(stand_in));
   witnesses_.clear();
   bearings_ = {};
 }
 
-void MapFollower::get_lost(std::size_t b, std::size_t witnesses_needed) {
-  bearings_.witnesses_needed = std::max(bearings_.witnesses_needed, witnesses_needed);
+void MapFollower::get_lost(std::size_t b) {
   if (bearings_.is_lost) return;
   bearings_.is_lost = true;
   lost_ = b;
@@ -132,51 +146,66 @@ void MapFollower::hold_back_from(std::size_t b) {
   }
 }
 
-/// The alternative of the link to `b` after which what follows is known again, where there is but one that some of it
-/// is known after: when there are more, only settling tells.
-void MapFollower::choose_by_what_follows(std::size_t b) {
+/// Takes the alternative of the link to `b` after which what follows is known again, and after no other. Without one
+/// the chain's own stays, and only a search, or settling, tells where the robot is.
+void MapFollower::doubt_link(std::size_t b) {
+  const bool was_lost = bearings_.is_lost;
+  get_lost(b);
+  bearings_.is_in_doubt = true;
+  witnesses_.clear();
+  if (was_lost) return;
   const int chosen = map_.link_choice[b - 1];
-  int sure = chosen;
-  std::size_t num_possible = 0;
+  PlaceChoice places;
+  int best = chosen;
   for (int k = 0; k < static_cast<int>(chain_.links[b - 1].hypotheses.size()); ++k) {
     map_.link_choice[b - 1] = k;
     expect(b);
-    const std::size_t in_a_row = longest_known_from(b);
-    if (in_a_row >= kWitnesses) ++num_possible;
-    if (in_a_row >= kWitnessesAfterDoubt) sure = k;
+    const Pose2 there = map_.map_from_keyframe[b];
+    if (places.add(there, num_known_from(b))) best = k;
   }
-  map_.link_choice[b - 1] = num_possible == 1 ? sure : chosen;
-  if (num_possible > 1) bearings_.witnesses_needed = kNever;
+  map_.link_choice[b - 1] = places.is_sure() ? best : chosen;
+  bearings_.is_in_doubt = !places.is_sure();
 }
 
-/// Of the keyframes from `b`, which is where it may be: the most in a row that are known where they are then expected.
-std::size_t MapFollower::longest_known_from(std::size_t b) {
-  std::size_t longest = 0;
-  std::size_t in_a_row = 0;
+/// Searches all of the map for `b`. When it is found, the link to it is cut: something on the way was wrong.
+bool MapFollower::find_again(std::size_t b) {
+  NodeViews views = views_of(chain_);
+  views.resize(b + 1);
+  RunObserver nobody;
+  PlaceChoice places;
+  for (const LoopHypothesis& likely :
+       likely_loops(views, b, options_.robust.search, options_.loop_search, options_.chain.threads, nobody)) {
+    if (map_.component[likely.a] != home_ || stand_ins_[likely.a]) continue;
+    const Pose2 there = map_.map_from_keyframe[b] = map_.map_from_keyframe[likely.a] * likely.a_from_b;
+    places.add(there, num_known_from(b));
+  }
+  if (!places.is_sure()) return false;
+  map_.map_from_keyframe[b] = places.best();
+  map_.link_choice[b - 1] = kCut;
+  map_.component[b] = home_;
+  witnesses_.clear();
+  last_known_ = b;
+  bearings_ = {};
+  for (StandIn& stand_in : stand_ins_at(b)) know(b, std::move(stand_in));
+  return true;
+}
+
+/// Of the keyframes from `b`, which is where it may be: how many are known where they are then expected. Gives up when
+/// that is sure to be fewer than a rival.
+std::size_t MapFollower::num_known_from(std::size_t b) {
+  std::size_t known = 0;
   for (std::size_t j = b; j < b + kLookAhead; ++j) {
     if (j > b && !link_exists(j)) break;
     if (j > b) expect(j);
     const std::vector<StandIn> found = stand_ins_at(j);
-    in_a_row = found.empty() ? 0 : in_a_row + 1;
-    longest = std::max(longest, in_a_row);
-    if (found.empty()) continue;
-    map_.map_from_keyframe[j] = map_.map_from_keyframe[found.front().keyframe] * found.front().pose.ref_from_query;
+    if (!found.empty()) {
+      ++known;
+      map_.map_from_keyframe[j] = map_.map_from_keyframe[found.front().keyframe] * found.front().pose.ref_from_query;
+    } else if (known + (b + kLookAhead - j - 1) < kRival) {
+      break;
+    }
   }
-  return longest;
-}
-
-/// Whether there is a place in the map from which on the robot may have gone as it did.
-bool MapFollower::is_known_somewhere(std::size_t b) {
-  NodeViews views = views_of(chain_);
-  views.resize(b + 1);
-  RunObserver nobody;
-  const std::vector<LoopHypothesis> places =
-      likely_loops(views, b, options_.robust.search, options_.loop_search, options_.chain.threads, nobody);
-  return std::any_of(places.begin(), places.end(), [&](const LoopHypothesis& place) {
-    if (map_.component[place.a] != home_ || stand_ins_[place.a]) return false;
-    map_.map_from_keyframe[b] = map_.map_from_keyframe[place.a] * place.a_from_b;
-    return longest_known_from(b) >= kInARowWhenFound;
-  });
+  return known;
 }
 
 std::vector<StandIn> MapFollower::stand_ins_at(std::size_t b) const {

@@ -16,10 +16,10 @@ namespace shapemap {
 /// How sure the robot is of where it is.
 struct Bearings {
   bool is_lost = false;
-  bool may_be_elsewhere = false;     ///< as in another log: only strong loops tell whether it is the same place at all
-  std::size_t witnesses_needed = 0;  ///< keyframes in a row that must be known again before it is sure where it is
-  std::size_t num_unseen = 0;        ///< keyframes since one was known again
-  std::size_t num_found = 0;         ///< searches in a row that found some place in the map
+  bool is_in_doubt = false;  ///< it may have gone another way than the chain says: that it is where it was expected
+                             ///< for a while does not tell
+  bool may_be_elsewhere = false;  ///< as in another log: only strong loops tell whether it is the same place at all
+  std::size_t num_unseen = 0;     ///< keyframes since one was known again
 };
 
 /// Goes along keyframes that are new to a map, puts them in their places there, and tells which it knows again.
@@ -45,13 +45,13 @@ class MapFollower {
   bool link_exists(std::size_t b) const;
   bool is_in_doubt(std::size_t b) const;
   void step(std::size_t b);
-  void get_lost(std::size_t b, std::size_t witnesses_needed);
+  void get_lost(std::size_t b);
   void know(std::size_t b, StandIn stand_in);
   void hold_back_from(std::size_t b);
 
-  void choose_by_what_follows(std::size_t b);
-  std::size_t longest_known_from(std::size_t b);
-  bool is_known_somewhere(std::size_t b);
+  void doubt_link(std::size_t b);
+  std::size_t num_known_from(std::size_t b);
+  bool find_again(std::size_t b);
 
   std::vector<StandIn> stand_ins_at(std::size_t b) const;
   std::vector<std::size_t> earlier_at_place(std::size_t b) const;

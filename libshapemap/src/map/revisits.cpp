@@ -9,9 +9,6 @@
 namespace shapemap {
 namespace {
 
-/// Searches in a row that find a place.
-constexpr std::size_t kFoundWhenBack = 2;
-
 /// What the chain says of links that the map does not know.
 void add_links(const KeyframeChain& chain, KeyframeMap& map) {
   for (std::size_t i = map.link_choice.size(); i < chain.links.size(); ++i) {
@@ -54,7 +51,6 @@ Revisits::Followed Revisits::follow(const KeyframeChain& chain) {
   for (std::size_t b = result.num_followed; b < count; ++b) follower.expect(b);
   add_link_constraints(chain, first - 1, result.map);
   bearings_ = follower.bearings();
-  result.may_be_back = bearings_.num_found >= kFoundWhenBack;
   result.stand_ins = std::move(follower.stand_ins());
   const std::vector<bool> may_go = settled_keyframes(log_, chain, result.map, options_);
   for (std::size_t b = first; b < count; ++b) {

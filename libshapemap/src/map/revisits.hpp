@@ -16,7 +16,7 @@ namespace shapemap {
 /// Follows the chain from the end of a settled map on, and knows places again that have a keyframe: where the robot is
 /// sure to be in the map, no more needs to be solved for that. Where it is not, as after an alignment in doubt or a
 /// long way past places that are new, it is sure again when several keyframes in a row are where they were expected, or
-/// when it is found by searching all of the map.
+/// when many are as they would be from one place in the map, and from no other.
 class Revisits {
  public:
   Revisits(const Log& log, const MappingOptions& options) : log_(log), options_(options) {}
@@ -30,7 +30,6 @@ class Revisits {
     KeyframeMap map;
     std::vector<std::optional<StandIn>> stand_ins;  ///< per keyframe: of those that may go
     std::size_t num_followed = 0;                   ///< the keyframes after the first so many may still change
-    bool may_be_back = false;                       ///< in the map, where it was not expected
   };
   Followed follow(const KeyframeChain& chain);
 

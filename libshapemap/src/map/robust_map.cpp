@@ -125,8 +125,9 @@ class Reading {
     std::size_t next = most;
     while (growth_.extend(next)) {
       const auto start = std::chrono::steady_clock::now();
-      const bool is_full = chain().keyframes.size() >= most;
-      if (is_full || follow()) {
+      if (chain().keyframes.size() < most) {
+        follow();
+      } else {
         settle();
         most = std::max(settle_at, 2 * chain().keyframes.size());
       }
@@ -148,13 +149,11 @@ class Reading {
     revisits_.start(chain(), map, chain().keyframes.size() - kKeyframesInUse);
   }
 
-  /// Whether it takes settling to tell where the robot is.
-  bool follow() {
+  void follow() {
     Revisits::Followed followed = revisits_.follow(chain());
     const std::size_t num_open = chain().keyframes.size() - followed.num_followed;
     retire(followed.stand_ins, followed.map);
     revisits_.renew(std::move(followed.map), num_open);
-    return followed.may_be_back;
   }
 
   void retire(const std::vector<std::optional<StandIn>>& stand_ins, KeyframeMap& map) {

@@ -136,8 +136,7 @@ TEST(Revisits, TakeTheAlternativeAfterWhichPlacesAreKnownAgain) {
   }
 }
 
-/// Two alternatives that go on alike tell nothing.
-TEST(Revisits, LeaveADoubtfulLinkThatNothingDecides) {
+TEST(Revisits, TakeEitherOfTwoAlternativesThatAreOnePlace) {
   const Laps& laps = two_laps();
   constexpr std::size_t kDoubtful = kSettled + 4;
   KnownChain known = doubtful_at(laps, kDoubtful, {0.7, 0.0, 5 * kDegree});
@@ -148,32 +147,46 @@ TEST(Revisits, LeaveADoubtfulLinkThatNothingDecides) {
         inverse(laps.truth[kDoubtful - 1]) * laps.truth[kDoubtful] * Pose2{off_m, 0.0, 0.0};
   }
   const Revisits::Followed result = followed(laps, known);
-  EXPECT_EQ(result.map.link_choice[kDoubtful - 1], 0);
-  EXPECT_EQ(num_known(result, kDoubtful), 0U);
+  EXPECT_GT(result.map.link_choice[kDoubtful - 1], 0);
+  EXPECT_GT(num_known(result, kDoubtful), 10U);
 }
 
 TEST(Revisits, KnowNothingAgainAfterAWrongLink) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
-  KnownChain known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
-  known.chain.keyframes.resize(kWrong + 30);  // too few to search for them
-  known.chain.links.resize(kWrong + 29);
-  KeyframeMap& map = known.map;
-  map.map_from_keyframe.resize(kWrong + 30);
-  map.component.resize(kWrong + 30);
-  const Revisits::Followed result = followed(laps, known);
+  const Revisits::Followed result = followed(laps, doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}));
   EXPECT_EQ(num_known(result, kWrong), 0U);
   EXPECT_FALSE(result.map.held_by_loops[kWrong - 1]);
+  ASSERT_GT(result.num_followed, kWrong + 8);
+  EXPECT_LT(result.num_followed, laps.truth.size() - kKeyframesInUse) << "what comes next is to be searched for";
   for (std::size_t b = kWrong; b < result.num_followed; ++b) EXPECT_NE(result.map.component[b], 0U) << b;
 }
 
-TEST(Revisits, TellThatTheyMayBeBackElsewhereThanExpected) {
+TEST(Revisits, FindTheOnePlaceThatMuchGoesWith) {
   const Laps laps = steady_laps(2 * test::kRingLap + 40);
   constexpr std::size_t kWrong = kSettled + 4;
   const Revisits::Followed result = followed(laps, doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}));
-  EXPECT_TRUE(result.may_be_back);
-  EXPECT_EQ(num_known(result, kWrong), 0U) << "places look alike";
-  EXPECT_FALSE(followed(laps, KnownChain(laps)).may_be_back);
+  EXPECT_GT(num_known(result, kWrong), 20U);
+  std::size_t num_cut = 0;
+  for (std::size_t b = kWrong; b < result.num_followed; ++b) {
+    num_cut += result.map.link_choice[b - 1] == kCut ? 1U : 0U;
+    EXPECT_EQ(result.map.component[b] == 0, num_cut > 0) << b;
+    if (num_cut == 0) continue;
+    EXPECT_THAT(result.map.map_from_keyframe[b], test::IsNearPose(laps.truth[b], 0.12, 2 * kDegree)) << b;
+  }
+  EXPECT_EQ(num_cut, 1U) << "between the way that was wrong and the place";
+}
+
+TEST(Revisits, FindNothingInAStrangePlace) {
+  Laps laps = steady_laps(2 * test::kRingLap + 40);
+  std::mt19937 rng(3);
+  constexpr std::size_t kAway = kSettled + 4;
+  for (std::size_t i = kAway; i < laps.truth.size(); ++i) {
+    laps.log.positions[i] = test::scan_of(test::ring_world(2), laps.truth[i], test::full_circle(), rng);
+  }
+  const Revisits::Followed result = followed(laps, KnownChain(laps));
+  ASSERT_GT(result.num_followed, kAway + 32);
+  EXPECT_EQ(num_known(result, kAway), 0U);
 }
 
 TEST(Revisits, KnowNothingAgainInAnotherLog) {
