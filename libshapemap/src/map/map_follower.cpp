@@ -3,10 +3,7 @@
 
 #include <algorithm>
 
-#include "loop_knowledge.hpp"
-#include "shapemap/core/observer.hpp"
 #include "shapemap/graph/loop_closing.hpp"
-#include "shapemap/graph/loop_hypotheses.hpp"
 
 namespace shapemap {
 namespace {
@@ -22,9 +19,6 @@ constexpr std::size_t kWitnesses = 3;
 constexpr std::size_t kLookAhead = 24;
 constexpr std::size_t kMostUnknown = 4;
 constexpr std::size_t kRival = 12;
-
-/// Who is lost searches after so many keyframes, and again.
-constexpr std::size_t kSearchEvery = 16;
 
 /// Nearest first.
 constexpr std::size_t kTried = 3;
@@ -45,7 +39,6 @@ class PlaceChoice {
   }
 
   bool is_sure() const { return num_known_ + kMostUnknown >= kLookAhead && num_rival_ < kRival; }
-  const Pose2& best() const { return best_; }
 
  private:
   Pose2 best_;
@@ -69,10 +62,7 @@ MapFollower::MapFollower(const KeyframeChain& chain, const MappingOptions& optio
 std::size_t MapFollower::go(std::size_t first, std::size_t last) {
   for (std::size_t b = first; b < last; ++b) {
     const bool doubts = is_in_doubt(b);
-    const bool searches = bearings_.is_lost && !bearings_.may_be_elsewhere && bearings_.num_unseen > 0 &&
-                          bearings_.num_unseen % kSearchEvery == 0;
-    if ((searches || (doubts && !bearings_.is_lost)) && b + kLookAhead > last) return b;
-    if (searches && find_again(b)) continue;
+    if (doubts && !bearings_.is_lost && b + kLookAhead > last) return b;
     if (doubts) doubt_link(b);
     step(b);
   }
@@ -100,7 +90,7 @@ void MapFollower::step(std::size_t b) {
   expect(b);
   if (!link_exists(b)) {
     get_lost(b);
-    bearings_.may_be_elsewhere = bearings_.is_in_doubt = true;
+    bearings_.is_in_doubt = true;
     lost_ = b;
     last_known_ = 0;
     witnesses_.clear();
@@ -147,7 +137,7 @@ void MapFollower::hold_back_from(std::size_t b) {
 }
 
 /// Takes the alternative of the link to `b` after which what follows is known again, and after no other. Without one
-/// the chain's own stays, and only a search, or settling, tells where the robot is.
+/// the chain's own stays, and only settling tells where the robot is.
 void MapFollower::doubt_link(std::size_t b) {
   const bool was_lost = bearings_.is_lost;
   get_lost(b);
@@ -165,29 +155,6 @@ void MapFollower::doubt_link(std::size_t b) {
   }
   map_.link_choice[b - 1] = places.is_sure() ? best : chosen;
   bearings_.is_in_doubt = !places.is_sure();
-}
-
-/// Searches all of the map for `b`. When it is found, the link to it is cut: something on the way was wrong.
-bool MapFollower::find_again(std::size_t b) {
-  NodeViews views = views_of(chain_);
-  views.resize(b + 1);
-  RunObserver nobody;
-  PlaceChoice places;
-  for (const LoopHypothesis& likely :
-       likely_loops(views, b, options_.robust.search, options_.loop_search, options_.chain.threads, nobody)) {
-    if (map_.component[likely.a] != home_ || stand_ins_[likely.a]) continue;
-    const Pose2 there = map_.map_from_keyframe[b] = map_.map_from_keyframe[likely.a] * likely.a_from_b;
-    places.add(there, num_known_from(b));
-  }
-  if (!places.is_sure()) return false;
-  map_.map_from_keyframe[b] = places.best();
-  map_.link_choice[b - 1] = kCut;
-  map_.component[b] = home_;
-  witnesses_.clear();
-  last_known_ = b;
-  bearings_ = {};
-  for (StandIn& stand_in : stand_ins_at(b)) know(b, std::move(stand_in));
-  return true;
 }
 
 /// Of the keyframes from `b`, which is where it may be: how many are known where they are then expected. Gives up when

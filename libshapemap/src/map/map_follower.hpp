@@ -16,10 +16,9 @@ namespace shapemap {
 /// How sure the robot is of where it is.
 struct Bearings {
   bool is_lost = false;
-  bool is_in_doubt = false;  ///< it may have gone another way than the chain says: that it is where it was expected
-                             ///< for a while does not tell
-  bool may_be_elsewhere = false;  ///< as in another log: only strong loops tell whether it is the same place at all
-  std::size_t num_unseen = 0;     ///< keyframes since one was known again
+  bool is_in_doubt = false;    ///< it may have gone another way than the chain says: that it is where it was expected
+                               ///< for a while does not tell
+  std::size_t num_unseen = 0;  ///< keyframes since one was known again
 };
 
 /// Goes along keyframes that are new to a map, puts them in their places there, and tells which it knows again.
@@ -51,7 +50,6 @@ class MapFollower {
 
   void doubt_link(std::size_t b);
   std::size_t num_known_from(std::size_t b);
-  bool find_again(std::size_t b);
 
   std::vector<StandIn> stand_ins_at(std::size_t b) const;
   std::vector<std::size_t> earlier_at_place(std::size_t b) const;

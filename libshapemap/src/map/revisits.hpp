@@ -15,8 +15,8 @@ namespace shapemap {
 
 /// Follows the chain from the end of a settled map on, and knows places again that have a keyframe: where the robot is
 /// sure to be in the map, no more needs to be solved for that. Where it is not, as after an alignment in doubt or a
-/// long way past places that are new, it is sure again when several keyframes in a row are where they were expected, or
-/// when many are as they would be from one place in the map, and from no other.
+/// long way past places that are new, it is sure again when several keyframes in a row are where they were expected.
+/// Where it may be at a place that looks alike, only solving all of the map tells.
 class Revisits {
  public:
   Revisits(const Log& log, const MappingOptions& options) : log_(log), options_(options) {}

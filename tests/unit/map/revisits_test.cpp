@@ -157,36 +157,8 @@ TEST(Revisits, KnowNothingAgainAfterAWrongLink) {
   const Revisits::Followed result = followed(laps, doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}));
   EXPECT_EQ(num_known(result, kWrong), 0U);
   EXPECT_FALSE(result.map.held_by_loops[kWrong - 1]);
-  ASSERT_GT(result.num_followed, kWrong + 8);
-  EXPECT_LT(result.num_followed, laps.truth.size() - kKeyframesInUse) << "what comes next is to be searched for";
+  EXPECT_EQ(result.num_followed, laps.truth.size() - kKeyframesInUse);
   for (std::size_t b = kWrong; b < result.num_followed; ++b) EXPECT_NE(result.map.component[b], 0U) << b;
-}
-
-TEST(Revisits, FindTheOnePlaceThatMuchGoesWith) {
-  const Laps laps = steady_laps(2 * test::kRingLap + 40);
-  constexpr std::size_t kWrong = kSettled + 4;
-  const Revisits::Followed result = followed(laps, doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}));
-  EXPECT_GT(num_known(result, kWrong), 20U);
-  std::size_t num_cut = 0;
-  for (std::size_t b = kWrong; b < result.num_followed; ++b) {
-    num_cut += result.map.link_choice[b - 1] == kCut ? 1U : 0U;
-    EXPECT_EQ(result.map.component[b] == 0, num_cut > 0) << b;
-    if (num_cut == 0) continue;
-    EXPECT_THAT(result.map.map_from_keyframe[b], test::IsNearPose(laps.truth[b], 0.12, 2 * kDegree)) << b;
-  }
-  EXPECT_EQ(num_cut, 1U) << "between the way that was wrong and the place";
-}
-
-TEST(Revisits, FindNothingInAStrangePlace) {
-  Laps laps = steady_laps(2 * test::kRingLap + 40);
-  std::mt19937 rng(3);
-  constexpr std::size_t kAway = kSettled + 4;
-  for (std::size_t i = kAway; i < laps.truth.size(); ++i) {
-    laps.log.positions[i] = test::scan_of(test::ring_world(2), laps.truth[i], test::full_circle(), rng);
-  }
-  const Revisits::Followed result = followed(laps, KnownChain(laps));
-  ASSERT_GT(result.num_followed, kAway + 32);
-  EXPECT_EQ(num_known(result, kAway), 0U);
 }
 
 TEST(Revisits, KnowNothingAgainInAnotherLog) {
