@@ -176,7 +176,13 @@ def test_ctrl_c_leaves_what_is_done_and_ends_the_programs(tmp_path: Path, progra
     command += ["--cli", programs.cli, "--baselines", program(tmp_path / "slow", slow)]
     command += ["--methods", "robust,mrpt-icp", "--jobs", "1"]
     environment = os.environ | {"SHAPEMAP_DATASETS": str(tmp_path)}
-    process = subprocess.Popen([str(w) for w in command], env=environment, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [str(w) for w in command],
+        env=environment,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # jobs in the background ignore it
+    )
     for _ in range(600):
         if alive.exists():
             break
