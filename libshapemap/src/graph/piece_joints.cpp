@@ -119,7 +119,7 @@ std::vector<Way> PieceJoints::ways(std::size_t f, const std::vector<std::size_t>
 bool PieceJoints::holds(const Joint& joint) const {
   const PoseConstraint& c = joint.constraint;
   const Pose2 off = inverse(c.a_from_b) * (inverse(piece_from_node_[c.a]) * piece_from_node_[c.b]);
-  return off.translation().norm() < kSame_m && std::abs(off.theta_rad) < kSame_rad;
+  return is_within(off, kSame_m, kSame_rad);
 }
 
 std::vector<Crossing> crossings(const std::vector<std::size_t>& of_f, const std::vector<std::size_t>& of_g) {

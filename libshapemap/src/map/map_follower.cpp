@@ -20,9 +20,6 @@ constexpr std::size_t kLookAhead = 24;
 constexpr std::size_t kMostUnknown = 4;
 constexpr std::size_t kRival = 12;
 
-/// Nearest first.
-constexpr std::size_t kTried = 3;
-
 /// Which of several places it is.
 class PlaceChoice {
  public:
@@ -192,7 +189,7 @@ std::vector<std::size_t> MapFollower::earlier_at_place(std::size_t b) const {
   }
   std::sort(near.begin(), near.end());
   std::vector<std::size_t> nearest;
-  for (std::size_t k = 0; k < std::min(kTried, near.size()); ++k) nearest.push_back(near[k].second);
+  for (std::size_t k = 0; k < std::min(kStandInsTried, near.size()); ++k) nearest.push_back(near[k].second);
   return nearest;
 }
 

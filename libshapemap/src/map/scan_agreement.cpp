@@ -60,7 +60,7 @@ class Judge {
     for (std::size_t i = 0; i < placed_.size(); ++i) {
       if (!starts.empty()) {
         const Pose2 step = inverse(placed_[starts.back()].map_from_robot) * placed_[i].map_from_robot;
-        if (step.translation().norm() < kLookStep_m && std::abs(step.theta_rad) < kLookTurn_rad) continue;
+        if (is_within(step, kLookStep_m, kLookTurn_rad)) continue;
       }
       starts.push_back(i);
     }

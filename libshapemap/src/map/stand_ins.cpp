@@ -12,9 +12,6 @@
 namespace shapemap {
 namespace {
 
-/// Keyframes that the two are asked of, nearest first.
-constexpr std::size_t kTried = 3;
-
 /// For each keyframe the earlier ones at its place, nearest first.
 std::vector<std::vector<std::size_t>> earlier_at_place(const KeyframeMap& map, const KeyframeOptions& options) {
   std::vector<std::vector<std::pair<double, std::size_t>>> near(map.map_from_keyframe.size());
@@ -69,7 +66,7 @@ std::vector<std::optional<StandIn>> find_stand_ins(const Log& log, const Keyfram
   const std::vector<std::vector<std::size_t>> earlier = earlier_at_place(map, options.keyframes);
   std::vector<std::vector<StandIn>> fitting(settled.size());
   parallel_for(settled.size(), options.chain.threads, [&](std::size_t b) {
-    if (settled[b]) fitting[b] = stand_ins_for(chain, map.map_from_keyframe, b, earlier[b], kTried, options);
+    if (settled[b]) fitting[b] = stand_ins_for(chain, map.map_from_keyframe, b, earlier[b], kStandInsTried, options);
   });
   std::vector<std::optional<StandIn>> stand_ins(settled.size());
   for (std::size_t b = 0; b < settled.size(); ++b) {

@@ -24,6 +24,9 @@ inline constexpr double kSureLink = 0.97;
 inline constexpr double kAsInMap_m = 0.25;
 inline constexpr double kAsInMap_rad = 3 * kDegree;
 
+/// Keyframes at a place that are asked whether they can stand for another, nearest first.
+inline constexpr std::size_t kStandInsTried = 3;
+
 /// An earlier keyframe that can stand for another.
 struct StandIn {
   std::size_t keyframe = 0;

@@ -10,7 +10,7 @@
 #include "shapemap/map/map_log.hpp"
 #include "support/matchers.hpp"
 #include "support/patience.hpp"
-#include "support/ring_walk.hpp"
+#include "support/ring_laps.hpp"
 
 namespace shapemap {
 namespace {
@@ -20,13 +20,8 @@ using ::testing::ElementsAre;
 
 /// A coarser search than by default.
 MappingOptions quick() {
-  MappingOptions options;
-  options.robust.search.hypotheses.rotation_peaks = 4;
-  options.robust.search.hypotheses.refined = 6;
-  options.robust.search.hypotheses.kept = 3;
-  options.robust.search.voting.peaks = 6;
+  MappingOptions options = test::quick_mapping();
   options.loop_search.likely_places = 4;
-  options.chain.threads = 1;
   return options;
 }
 
