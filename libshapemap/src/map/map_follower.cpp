@@ -3,78 +3,60 @@
 
 #include <algorithm>
 
+#include "place_choice.hpp"
 #include "shapemap/graph/loop_closing.hpp"
 
 namespace shapemap {
 namespace {
 
-/// Past more keyframes of new places, errors may have added up.
-constexpr std::size_t kMostUnseen = 8;
+/// Of a robot that is sure of where it is: two places that look otherwise than they should are put down to change.
+constexpr double kSure = 5.0;
 
-/// So many in a row that are where they were expected are no coincidence where errors have only added up.
-constexpr std::size_t kWitnesses = 3;
+/// Where nobody has been, errors add up; by themselves they do not get a robot lost.
+constexpr double kErrorOfNew = 0.25;
+constexpr double kLeastOfNew = 2.0;
 
-/// Whether the robot is at a place or at one that looks alike, as one of a row of rooms does for a while, is judged by
-/// the next so many keyframes: all but a few are known at the right place, and fewer than half at others.
+/// After a link in doubt, so many keyframes are looked at to decide.
 constexpr std::size_t kLookAhead = 24;
-constexpr std::size_t kMostUnknown = 4;
-constexpr std::size_t kRival = 12;
 
-/// Which of several places it is.
-class PlaceChoice {
- public:
-  /// True when it is the best so far.
-  bool add(const Pose2& place, std::size_t num_known) {
-    const bool is_first = num_known_ == 0 && num_known > 0;
-    const bool is_same = !is_first && is_within(inverse(best_) * place, kAsInMap_m, kAsInMap_rad);
-    const bool is_better = num_known > num_known_;
-    if (!is_same) num_rival_ = std::max(num_rival_, is_better ? num_known_ : num_known);
-    if (!is_better) return false;
-    best_ = place;
-    num_known_ = num_known;
-    return true;
-  }
-
-  bool is_sure() const { return num_known_ + kMostUnknown >= kLookAhead && num_rival_ < kRival; }
-
- private:
-  Pose2 best_;
-  std::size_t num_known_ = 0;
-  std::size_t num_rival_ = 0;
-};
+/// Places of a stretch that are tried, likeliest first.
+constexpr std::size_t kMostTried = 16;
 
 }  // namespace
 
 MapFollower::MapFollower(const KeyframeChain& chain, const MappingOptions& options, std::size_t home, std::size_t first,
-                         Bearings bearings, KeyframeMap& map)
+                         bool is_lost, const std::vector<LoopHypothesis>& loops, KeyframeMap& map)
     : chain_(chain),
       options_(options),
-      home_(home),
+      loops_(loops),
       map_(map),
-      bearings_(bearings),
+      recognition_(chain, options, home),
       stand_ins_(chain.keyframes.size()),
-      last_known_(bearings.is_lost || bearings.num_unseen > 0 ? 0 : first - 1),
-      lost_(first) {}
+      is_lost_(is_lost),
+      log_odds_(kSure),
+      open_(first),
+      last_known_(is_lost ? 0 : first - 1) {}
 
-std::size_t MapFollower::go(std::size_t first, std::size_t last) {
-  for (std::size_t b = first; b < last; ++b) {
+std::size_t MapFollower::go(std::size_t last) {
+  for (std::size_t b = open_; b < last && !is_lost_; ++b) {
     const bool doubts = is_in_doubt(b);
-    if (doubts && !bearings_.is_lost && b + kLookAhead > last) return b;
-    if (doubts) doubt_link(b);
-    step(b);
+    if (doubts && b + kLookAhead > last) return open_;
+    if (!link_exists(b) || (doubts && !decide(b))) {
+      get_lost();
+    } else if (!step(b)) {
+      get_lost();
+    }
   }
-  return witnesses_.empty() ? last : witnesses_.front().first;
+  if (is_lost_) find_way(last);
+  return open_;
 }
 
 void MapFollower::expect(std::size_t b) {
-  const int choice = map_.link_choice[b - 1];
-  if (choice == kCut) {
+  if (link_exists(b)) {
+    map_.map_from_keyframe[b] = map_.map_from_keyframe[b - 1] * link_in_map(chain_, map_, b);
+  } else {
     map_.map_from_keyframe[b] = {kPiecesApart_m * static_cast<double>(b), 0.0, 0.0};
-    return;
   }
-  const std::vector<PoseHypothesis>& hypotheses = chain_.links[b - 1].hypotheses;
-  map_.map_from_keyframe[b] =
-      map_.map_from_keyframe[b - 1] * hypotheses[static_cast<std::size_t>(choice)].ref_from_query;
 }
 
 bool MapFollower::link_exists(std::size_t b) const { return map_.link_choice[b - 1] != kCut; }
@@ -83,114 +65,162 @@ bool MapFollower::is_in_doubt(std::size_t b) const {
   return link_exists(b) && link_probability(chain_.links[b - 1], options_.robust.confidence) < kSureLink;
 }
 
-void MapFollower::step(std::size_t b) {
+/// False when the robot cannot be where it is expected.
+bool MapFollower::step(std::size_t b) {
   expect(b);
-  if (!link_exists(b)) {
-    get_lost(b);
-    bearings_.is_in_doubt = true;
-    lost_ = b;
-    last_known_ = 0;
-    witnesses_.clear();
+  map_.component[b] = recognition_.home();
+  Look seen = recognition_.look(map_, b, b);
+  log_odds_ = std::min(kSure, log_odds_ + seen.log_odds);
+  if (log_odds_ < 0.0) return false;
+  if (seen.stand_in) {
+    map_.map_from_keyframe[b] = map_.map_from_keyframe[seen.stand_in->keyframe] * seen.stand_in->pose.ref_from_query;
+    pending_.emplace_back(b, std::move(*seen.stand_in));
+    recognition_.let_go(b);
   }
-  std::vector<StandIn> found;
-  if (!bearings_.is_in_doubt) found = stand_ins_at(b);
-  if (found.empty()) {
-    witnesses_.clear();
-    if (++bearings_.num_unseen > kMostUnseen) get_lost(b);
-    map_.component[b] = bearings_.is_lost ? lost_ : home_;
-    return;
+  const bool is_new = !seen.stand_in && seen.log_odds == 0.0;
+  if (is_new && pending_.empty() && open_ == b) {
+    log_odds_ = std::min(log_odds_, std::max(kLeastOfNew, log_odds_ - kErrorOfNew));
+    open_ = b + 1;
+  } else if (log_odds_ == kSure) {
+    make_certain(b + 1);
   }
-  map_.map_from_keyframe[b] = map_.map_from_keyframe[found.front().keyframe] * found.front().pose.ref_from_query;
-  map_.component[b] = bearings_.is_lost ? lost_ : home_;
-  witnesses_.emplace_back(b, std::move(found.front()));
-  if (bearings_.is_lost && witnesses_.size() < kWitnesses) return;
-  for (auto& [keyframe, stand_in] : witnesses_) know(keyframe, std::move(stand_in));
-  witnesses_.clear();
-  bearings_ = {};
+  return true;
 }
 
-void MapFollower::get_lost(std::size_t b) {
-  if (bearings_.is_lost) return;
-  bearings_.is_lost = true;
-  lost_ = b;
+void MapFollower::make_certain(std::size_t end) {
+  for (auto& [keyframe, stand_in] : pending_) know(keyframe, std::move(stand_in));
+  pending_.clear();
+  open_ = end;
 }
 
 void MapFollower::know(std::size_t b, StandIn stand_in) {
   map_.constraints.push_back(
       {stand_in.keyframe, b, stand_in.pose.ref_from_query, pose_covariance(stand_in.pose.fit), 0.0});
   hold_back_from(b);
-  map_.component[b] = home_;
   last_known_ = b;
+  recognition_.let_go(b);
   stand_ins_[b] = std::move(stand_in);
 }
 
 /// What is between a keyframe that is known again and the last one that was is held from both ends.
 void MapFollower::hold_back_from(std::size_t b) {
-  for (std::size_t i = b; i > last_known_ && map_.link_choice[i - 1] != kCut; --i) {
+  for (std::size_t i = b; i > last_known_ && link_exists(i); --i) {
+    if (map_.component[i - 1] != recognition_.home()) break;
     map_.held_by_loops[i - 1] = true;
-    map_.component[i] = home_;
-    if (last_known_ == 0 && map_.component[i - 1] == home_) break;
   }
 }
 
-/// Takes the alternative of the link to `b` after which what follows is known again, and after no other. Without one
-/// the chain's own stays, and only settling tells where the robot is.
-void MapFollower::doubt_link(std::size_t b) {
-  const bool was_lost = bearings_.is_lost;
-  get_lost(b);
-  bearings_.is_in_doubt = true;
-  witnesses_.clear();
-  if (was_lost) return;
+/// Takes the alternative of the link to `b` after which what follows is known again, and after no other.
+bool MapFollower::decide(std::size_t b) {
   const int chosen = map_.link_choice[b - 1];
+  const Pose2 before = map_.map_from_keyframe[b - 1];
+  std::size_t end = b + 1;
+  while (end < b + kLookAhead && link_exists(end)) ++end;
   PlaceChoice places;
   int best = chosen;
   for (int k = 0; k < static_cast<int>(chain_.links[b - 1].hypotheses.size()); ++k) {
     map_.link_choice[b - 1] = k;
-    expect(b);
-    const Pose2 there = map_.map_from_keyframe[b];
-    if (places.add(there, num_known_from(b))) best = k;
+    if (places.add(recognition_.lay(map_, b, end, b, before * link_in_map(chain_, map_, b)))) best = k;
   }
   map_.link_choice[b - 1] = places.is_sure() ? best : chosen;
-  bearings_.is_in_doubt = !places.is_sure();
+  return places.is_sure();
 }
 
-/// Of the keyframes from `b`, which is where it may be: how many are known where they are then expected. Gives up when
-/// that is sure to be fewer than a rival.
-std::size_t MapFollower::num_known_from(std::size_t b) {
-  std::size_t known = 0;
-  for (std::size_t j = b; j < b + kLookAhead; ++j) {
-    if (j > b && !link_exists(j)) break;
-    if (j > b) expect(j);
-    const std::vector<StandIn> found = stand_ins_at(j);
-    if (!found.empty()) {
-      ++known;
-      map_.map_from_keyframe[j] = map_.map_from_keyframe[found.front().keyframe] * found.front().pose.ref_from_query;
-    } else if (known + (b + kLookAhead - j - 1) < kRival) {
-      break;
+void MapFollower::get_lost() {
+  is_lost_ = true;
+  for (const auto& [keyframe, unused] : pending_) recognition_.keep(keyframe);
+  pending_.clear();
+  last_known_ = 0;
+}
+
+/// Of what may be anywhere, each stretch that links in doubt leave whole is tried at all places where it may be. What
+/// comes before one that is found stays apart until all of the map is solved.
+void MapFollower::find_way(std::size_t last) {
+  const std::size_t lost = open_;
+  for (std::size_t b = lost; b < last; ++b) {
+    expect(b);
+    map_.component[b] = lost;
+  }
+  is_lost_ = true;
+  for (std::size_t first = lost; first < last;) {
+    const std::size_t end = end_of_stretch(first, last);
+    if (place(first, end)) {
+      open_ = end;
+      is_lost_ = end < last;
+    }
+    first = end;
+  }
+}
+
+std::size_t MapFollower::end_of_stretch(std::size_t first, std::size_t last) const {
+  std::size_t end = first + 1;
+  while (end < last && link_exists(end) && !is_in_doubt(end)) ++end;
+  return end;
+}
+
+bool MapFollower::place(std::size_t first, std::size_t last) {
+  PlaceChoice places;
+  std::size_t tried = 0;
+  for (const auto& [seed, map_from_seed] : candidates(first, last)) {
+    if (places.has(seed - first, map_from_seed)) continue;
+    if (++tried > kMostTried) break;
+    places.add(recognition_.lay(map_, first, last, seed, map_from_seed));
+  }
+  if (places.is_sure()) {
+    settle_in(first, last, places.best());
+    return true;
+  }
+  for (std::size_t b = first; b < last; ++b) expect(b);
+  return false;
+}
+
+/// A keyframe each, and where it may be: where the link to the first says, and where loops do.
+std::vector<std::pair<std::size_t, Pose2>> MapFollower::candidates(std::size_t first, std::size_t last) const {
+  std::vector<std::pair<std::size_t, Pose2>> found;
+  if (map_.component[first - 1] == recognition_.home()) {
+    for (const PoseHypothesis& pose : chain_.links[first - 1].hypotheses) {
+      found.emplace_back(first, map_.map_from_keyframe[first - 1] * pose.ref_from_query);
     }
   }
-  return known;
-}
-
-std::vector<StandIn> MapFollower::stand_ins_at(std::size_t b) const {
-  return stand_ins_for(chain_, map_.map_from_keyframe, b, earlier_at_place(b), 1, options_);
-}
-
-/// Of those that stay, the nearest to where `b` is expected. When lost, those just before it are no witnesses.
-std::vector<std::size_t> MapFollower::earlier_at_place(std::size_t b) const {
-  const std::size_t end = bearings_.is_lost ? b - std::min(b, kKeyframesInUse) : b;
-  std::vector<std::pair<double, std::size_t>> near;
-  for (std::size_t a = 0; a < end; ++a) {
-    if (map_.component[a] != home_ || stand_ins_[a]) continue;
-    const Pose2 a_from_b = inverse(map_.map_from_keyframe[a]) * map_.map_from_keyframe[b];
-    if (is_within(a_from_b, options_.keyframes.step_m, options_.keyframes.turn_rad)) {
-      near.emplace_back(a_from_b.translation().norm(), a);
-    }
+  std::vector<const LoopHypothesis*> here;
+  for (const LoopHypothesis& loop : loops_) {
+    const bool is_here = first <= loop.b && loop.b < last && loop.a < first;
+    if (is_here && map_.component[loop.a] == recognition_.home() && !stand_ins_[loop.a]) here.push_back(&loop);
   }
-  std::sort(near.begin(), near.end());
-  std::vector<std::size_t> nearest;
-  for (std::size_t k = 0; k < std::min(kStandInsTried, near.size()); ++k) nearest.push_back(near[k].second);
-  return nearest;
+  std::stable_sort(here.begin(), here.end(), [](const LoopHypothesis* one, const LoopHypothesis* other) {
+    return one->log_odds > other->log_odds;
+  });
+  for (const LoopHypothesis* loop : here) {
+    found.emplace_back(loop->b, map_.map_from_keyframe[loop->a] * loop->a_from_b);
+  }
+  return found;
+}
+
+/// The robot is where the stretch was laid.
+void MapFollower::settle_in(std::size_t first, std::size_t last, LaidStretch stretch) {
+  for (std::size_t b = first; b < last; ++b) {
+    map_.map_from_keyframe[b] = stretch.map_from_keyframe[b - first];
+    map_.component[b] = recognition_.home();
+  }
+  take_link_as_in_map(first);
+  last_known_ = first;
+  for (std::size_t b = first; b < last; ++b) {
+    if (stretch.stand_ins[b - first]) know(b, std::move(*stretch.stand_ins[b - first]));
+  }
+  log_odds_ = kSure;
+}
+
+/// Of a link between two keyframes that are both in their places.
+void MapFollower::take_link_as_in_map(std::size_t b) {
+  if (map_.component[b - 1] != recognition_.home()) return;
+  const Pose2 in_map = inverse(map_.map_from_keyframe[b - 1]) * map_.map_from_keyframe[b];
+  const std::vector<PoseHypothesis>& hypotheses = chain_.links[b - 1].hypotheses;
+  map_.link_choice[b - 1] = kCut;
+  for (std::size_t k = 0; k < hypotheses.size() && map_.link_choice[b - 1] == kCut; ++k) {
+    if (!is_within(inverse(hypotheses[k].ref_from_query) * in_map, kAsInMap_m, kAsInMap_rad)) continue;
+    map_.link_choice[b - 1] = static_cast<int>(k);
+    map_.held_by_loops[b - 1] = true;
+  }
 }
 
 }  // namespace shapemap

@@ -8,61 +8,66 @@
 
 #include "keyframe_chain.hpp"
 #include "keyframe_map.hpp"
+#include "recognition.hpp"
+#include "shapemap/graph/loop_clusters.hpp"
 #include "shapemap/map/mapping_options.hpp"
 #include "stand_ins.hpp"
 
 namespace shapemap {
 
-/// How sure the robot is of where it is.
-struct Bearings {
-  bool is_lost = false;
-  bool is_in_doubt = false;    ///< it may have gone another way than the chain says: that it is where it was expected
-                               ///< for a while does not tell
-  std::size_t num_unseen = 0;  ///< keyframes since one was known again
-};
-
-/// Goes along keyframes that are new to a map, puts them in their places there, and tells which it knows again.
+/// Goes along keyframes that are new to a map, puts them in their places there, and tells which it knows again. What it
+/// knows counts only when what comes after agrees: of the robot's being where it is expected, each keyframe that is
+/// known raises the odds, and each that shows something else there lowers them. When they are too low, or after a link
+/// in doubt that neither of them decides, the robot is lost: all places that it may be at are tried.
 class MapFollower {
  public:
   /// `map` has links and a place for all keyframes; those before `first` are in theirs. `home` is the component that
-  /// the robot was sure to be in.
+  /// the robot was sure to be in; it is still sure to be at keyframe `first - 1` unless it `is_lost`. `loops` are
+  /// places where keyframes may have been before.
   MapFollower(const KeyframeChain& chain, const MappingOptions& options, std::size_t home, std::size_t first,
-              Bearings bearings, KeyframeMap& map);
+              bool is_lost, const std::vector<LoopHypothesis>& loops, KeyframeMap& map);
 
-  /// Along keyframes up to `last`; returns where to go on next time: what only begins to be known again is looked at
-  /// anew then, and so is a link in doubt of which too little is known of what comes after.
-  std::size_t go(std::size_t first, std::size_t last);
+  /// Along keyframes up to `last`; returns where to go on next time, with is_lost() as it was there: what is not
+  /// certain yet is looked at anew then.
+  std::size_t go(std::size_t last);
 
   /// Puts a keyframe where the link to it says.
   void expect(std::size_t b);
 
-  const Bearings& bearings() const { return bearings_; }
+  bool is_lost() const { return is_lost_; }
   /// Per keyframe: what it was known by.
   std::vector<std::optional<StandIn>>& stand_ins() { return stand_ins_; }
 
  private:
   bool link_exists(std::size_t b) const;
   bool is_in_doubt(std::size_t b) const;
-  void step(std::size_t b);
-  void get_lost(std::size_t b);
+
+  bool step(std::size_t b);
+  void make_certain(std::size_t end);
   void know(std::size_t b, StandIn stand_in);
   void hold_back_from(std::size_t b);
 
-  void doubt_link(std::size_t b);
-  std::size_t num_known_from(std::size_t b);
-
-  std::vector<StandIn> stand_ins_at(std::size_t b) const;
-  std::vector<std::size_t> earlier_at_place(std::size_t b) const;
+  bool decide(std::size_t b);
+  void get_lost();
+  void find_way(std::size_t last);
+  std::size_t end_of_stretch(std::size_t first, std::size_t last) const;
+  bool place(std::size_t first, std::size_t last);
+  std::vector<std::pair<std::size_t, Pose2>> candidates(std::size_t first, std::size_t last) const;
+  void settle_in(std::size_t first, std::size_t last, LaidStretch stretch);
+  void take_link_as_in_map(std::size_t b);
 
   const KeyframeChain& chain_;
   const MappingOptions& options_;
-  std::size_t home_;
+  const std::vector<LoopHypothesis>& loops_;
   KeyframeMap& map_;
-  Bearings bearings_;
+  Recognition recognition_;
   std::vector<std::optional<StandIn>> stand_ins_;
-  std::vector<std::pair<std::size_t, StandIn>> witnesses_;  ///< known again in a row, if it is true
-  std::size_t last_known_;                                  ///< of this go; 0: none
-  std::size_t lost_;                                        ///< the first keyframe of what may be anywhere
+
+  bool is_lost_;
+  double log_odds_;                                       ///< that the robot is where it is expected
+  std::size_t open_;                                      ///< the first keyframe that is not certain yet
+  std::vector<std::pair<std::size_t, StandIn>> pending_;  ///< known again from there on, if it is true
+  std::size_t last_known_;                                ///< of this go; 0: none
 };
 
 }  // namespace shapemap

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "map_follower.hpp"
 #include "shapemap/graph/loop_closing.hpp"
 
 namespace shapemap {
@@ -28,12 +29,12 @@ void add_link_constraints(const KeyframeChain& chain, std::size_t first, Keyfram
 }  // namespace
 
 void Revisits::start(const KeyframeChain& chain, const KeyframeMap& map, std::size_t num_settled) {
-  bearings_ = {};
+  is_lost_ = false;
   home_position_ = chain.keyframes[map.component[num_settled - 1]].position_index;
   renew(map, chain.keyframes.size() - num_settled);
 }
 
-Revisits::Followed Revisits::follow(const KeyframeChain& chain) {
+Revisits::Followed Revisits::follow(const KeyframeChain& chain, const std::vector<LoopHypothesis>& loops) {
   const std::size_t first = settled_.map_from_keyframe.size();
   const std::size_t count = chain.keyframes.size();
   const std::size_t last = count - std::min(count, kKeyframesInUse);
@@ -46,11 +47,11 @@ Revisits::Followed Revisits::follow(const KeyframeChain& chain) {
       std::lower_bound(chain.keyframes.begin(), chain.keyframes.end(), home_position_,
                        [](const Keyframe& k, std::size_t position) { return k.position_index < position; });
   const std::size_t home_component = result.map.component[static_cast<std::size_t>(home - chain.keyframes.begin())];
-  MapFollower follower(chain, options_, home_component, first, bearings_, result.map);
-  result.num_followed = follower.go(first, std::max(first, last));
+  MapFollower follower(chain, options_, home_component, first, is_lost_, loops, result.map);
+  result.num_followed = follower.go(std::max(first, last));
   for (std::size_t b = result.num_followed; b < count; ++b) follower.expect(b);
   add_link_constraints(chain, first - 1, result.map);
-  bearings_ = follower.bearings();
+  is_lost_ = follower.is_lost();
   result.stand_ins = std::move(follower.stand_ins());
   const std::vector<bool> may_go = settled_keyframes(log_, chain, result.map, options_);
   for (std::size_t b = first; b < count; ++b) {

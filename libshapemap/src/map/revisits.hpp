@@ -7,16 +7,14 @@
 
 #include "keyframe_chain.hpp"
 #include "keyframe_map.hpp"
-#include "map_follower.hpp"
+#include "shapemap/graph/loop_clusters.hpp"
 #include "shapemap/map/mapping_options.hpp"
 #include "stand_ins.hpp"
 
 namespace shapemap {
 
 /// Follows the chain from the end of a settled map on, and knows places again that have a keyframe: where the robot is
-/// sure to be in the map, no more needs to be solved for that. Where it is not, as after an alignment in doubt or a
-/// long way past places that are new, it is sure again when several keyframes in a row are where they were expected.
-/// Where it may be at a place that looks alike, only solving all of the map tells.
+/// sure to be in the map, no more needs to be solved for that.
 class Revisits {
  public:
   Revisits(const Log& log, const MappingOptions& options) : log_(log), options_(options) {}
@@ -31,7 +29,10 @@ class Revisits {
     std::vector<std::optional<StandIn>> stand_ins;  ///< per keyframe: of those that may go
     std::size_t num_followed = 0;                   ///< the keyframes after the first so many may still change
   };
-  Followed follow(const KeyframeChain& chain);
+  Followed follow(const KeyframeChain& chain, const std::vector<LoopHypothesis>& loops);
+
+  /// Whether loops help: the robot does not know where it is in the map.
+  bool is_lost() const { return is_lost_; }
 
   /// Without the keyframes that were retired; the last `num_open` may still change.
   void renew(KeyframeMap map, std::size_t num_open);
@@ -41,7 +42,7 @@ class Revisits {
   const MappingOptions& options_;
   KeyframeMap settled_;
   std::size_t home_position_ = 0;  ///< of the first keyframe of the part of the map that the robot was sure to be in
-  Bearings bearings_;
+  bool is_lost_ = false;
 };
 
 }  // namespace shapemap

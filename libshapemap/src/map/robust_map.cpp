@@ -150,7 +150,11 @@ class Reading {
   }
 
   void follow() {
-    Revisits::Followed followed = revisits_.follow(chain());
+    if (revisits_.is_lost()) {
+      find_loops(chain(), chain().keyframes.size() - kKeyframesInUse, options_, observer_, store_, known_);
+      if (!observer_.keep_going()) return;
+    }
+    Revisits::Followed followed = revisits_.follow(chain(), known_.hypotheses);
     const std::size_t num_open = chain().keyframes.size() - followed.num_followed;
     retire(followed.stand_ins, followed.map);
     revisits_.renew(std::move(followed.map), num_open);

@@ -39,20 +39,23 @@ const MappingOptions& quick() {
   return options;
 }
 
-/// What is followed after `num_settled` keyframes, whose part of the map is right.
-Revisits::Followed followed(const Laps& laps, const KnownChain& known, std::size_t num_settled = kSettled) {
+/// What is followed after `kSettled` keyframes, whose part of the map is right.
+Revisits::Followed followed(const Laps& laps, const KnownChain& known, const std::vector<LoopHypothesis>& loops = {}) {
   Revisits revisits(laps.log, quick());
   KeyframeMap map = known.map;
-  std::copy(laps.truth.begin(), laps.truth.begin() + static_cast<std::ptrdiff_t>(num_settled),
+  std::copy(laps.truth.begin(), laps.truth.begin() + static_cast<std::ptrdiff_t>(kSettled),
             map.map_from_keyframe.begin());
-  revisits.start(known.chain, map, num_settled);
-  return revisits.follow(known.chain);
+  revisits.start(known.chain, map, kSettled);
+  return revisits.follow(known.chain, loops);
 }
 
 std::size_t num_known(const Revisits::Followed& followed, std::size_t first = 0) {
   return static_cast<std::size_t>(std::count_if(followed.stand_ins.begin() + static_cast<std::ptrdiff_t>(first),
                                                 followed.stand_ins.end(), [](const auto& s) { return s.has_value(); }));
 }
+
+/// The last few keyframes are left for later.
+std::size_t end_of_followed(const Laps& laps) { return laps.truth.size() - kKeyframesInUse; }
 
 /// The poses of a robot whose each step is off by so much.
 std::vector<Pose2> drifting(const std::vector<Pose2>& truth, const Pose2& error) {
@@ -63,13 +66,18 @@ std::vector<Pose2> drifting(const std::vector<Pose2>& truth, const Pose2& error)
   return poses;
 }
 
-/// The link to keyframe `b` is in doubt, and off by `error`.
-KnownChain doubtful_at(const Laps& laps, std::size_t b, const Pose2& error) {
+/// The link to keyframe `b` is off by `error`.
+KnownChain wrong_at(const Laps& laps, std::size_t b, const Pose2& error) {
   std::vector<Pose2> poses = laps.truth;
   for (std::size_t i = b; i < poses.size(); ++i) {
     poses[i] = poses[b - 1] * error * (inverse(laps.truth[b - 1]) * laps.truth[i]);
   }
-  KnownChain known(laps, poses);
+  return {laps, poses};
+}
+
+/// And in doubt.
+KnownChain doubtful_at(const Laps& laps, std::size_t b, const Pose2& error) {
+  KnownChain known = wrong_at(laps, b, error);
   known.chain.links[b - 1].choice.margin = 0.01;  // another place fits as well
   return known;
 }
@@ -78,7 +86,7 @@ TEST(Revisits, KnowThePlacesOfTheLapBefore) {
   const Laps& laps = two_laps();
   const Revisits::Followed result = followed(laps, KnownChain(laps));
   ASSERT_EQ(result.stand_ins.size(), laps.truth.size());
-  EXPECT_EQ(result.num_followed, laps.truth.size() - kKeyframesInUse);
+  EXPECT_EQ(result.num_followed, end_of_followed(laps));
   EXPECT_GT(num_known(result), (result.num_followed - kSettled) * 3 / 4);
   EXPECT_EQ(num_known(result, result.num_followed), 0U);
   for (std::size_t b = 0; b < laps.truth.size(); ++b) {
@@ -157,8 +165,66 @@ TEST(Revisits, KnowNothingAgainAfterAWrongLink) {
   const Revisits::Followed result = followed(laps, doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}));
   EXPECT_EQ(num_known(result, kWrong), 0U);
   EXPECT_FALSE(result.map.held_by_loops[kWrong - 1]);
-  EXPECT_EQ(result.num_followed, laps.truth.size() - kKeyframesInUse);
-  for (std::size_t b = kWrong; b < result.num_followed; ++b) EXPECT_NE(result.map.component[b], 0U) << b;
+  EXPECT_EQ(result.num_followed, kWrong);
+  for (std::size_t b = kWrong; b < end_of_followed(laps); ++b) EXPECT_NE(result.map.component[b], 0U) << b;
+}
+
+/// A hypothesis that keyframe `b` is where it was a lap ago.
+LoopHypothesis loop_to(const Laps& laps, std::size_t b) {
+  const std::size_t a = b - test::kRingLap;
+  return {a, b, inverse(laps.truth[a]) * laps.truth[b], Eigen::Matrix3d::Identity() * 1e-4, 2.0};
+}
+
+TEST(Revisits, FindTheWayAgainWhereALoopPutsIt) {
+  const Laps& laps = two_laps();
+  constexpr std::size_t kWrong = kSettled + 4;
+  const KnownChain known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
+  LoopHypothesis wrong = loop_to(laps, kWrong + 7);
+  wrong.a -= 5;
+  wrong.log_odds = 3.0;
+  const Revisits::Followed result = followed(laps, known, {wrong, loop_to(laps, kWrong + 9)});
+  EXPECT_EQ(result.num_followed, end_of_followed(laps));
+  EXPECT_GE(num_known(result) + 2, num_known(followed(laps, KnownChain(laps))));  // the two at the link stay
+  for (std::size_t b = 0; b < result.num_followed; ++b) {
+    EXPECT_EQ(result.map.component[b], 0U) << b;
+    EXPECT_THAT(result.map.map_from_keyframe[b], test::IsNearPose(laps.truth[b], 0.10, 2 * kDegree)) << b;
+  }
+  EXPECT_EQ(result.map.link_choice[kWrong - 1], kCut);  // none of its hypotheses is where the robot went
+}
+
+TEST(Revisits, FindNoWayWhereALoopIsWrong) {
+  const Laps& laps = two_laps();
+  constexpr std::size_t kWrong = kSettled + 4;
+  LoopHypothesis wrong = loop_to(laps, kWrong + 9);
+  wrong.a -= 6;
+  const Revisits::Followed result = followed(laps, doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}), {wrong});
+  EXPECT_EQ(result.num_followed, kWrong);
+  EXPECT_EQ(num_known(result, kWrong), 0U);
+}
+
+/// A link that was taken for sure.
+TEST(Revisits, GetLostWhereSomethingElseIsSeen) {
+  const Laps& laps = two_laps();
+  constexpr std::size_t kWrong = kSettled + 4;
+  KnownChain known = wrong_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
+  known.chain.links[kWrong - 1].hypotheses = known.chain.links[kWrong - 2].hypotheses;  // sure by what it seems to be
+  known.chain.links[kWrong - 1].hypotheses.front().ref_from_query =
+      inverse(laps.truth[kWrong - 1]) * laps.truth[kWrong] * Pose2{0.7, 0.0, 5 * kDegree};
+  ASSERT_GE(link_probability(known.chain.links[kWrong - 1], {}), kSureLink);
+  const Revisits::Followed result = followed(laps, known);
+  EXPECT_LE(result.num_followed, kWrong + 2);
+  EXPECT_EQ(num_known(result, kWrong), 0U);
+}
+
+TEST(Revisits, ForgiveAPlaceThatHasChanged) {
+  const Laps& laps = two_laps();
+  constexpr std::size_t kChanged = kSettled + 9;
+  KnownChain known(laps);
+  known.chain.keyframes[kChanged].view = known.chain.keyframes[kChanged - 20].view;
+  const Revisits::Followed result = followed(laps, known);
+  EXPECT_FALSE(result.stand_ins[kChanged]);
+  EXPECT_EQ(result.num_followed, end_of_followed(laps));
+  EXPECT_GE(num_known(result) + 2, num_known(followed(laps, KnownChain(laps))));
 }
 
 TEST(Revisits, KnowNothingAgainInAnotherLog) {
@@ -172,7 +238,7 @@ TEST(Revisits, KnowNothingAgainInAnotherLog) {
   const Revisits::Followed result = followed(laps, known);
   EXPECT_EQ(result.map.link_choice[kStart - 1], kCut);
   EXPECT_EQ(num_known(result, kStart), 0U);
-  for (std::size_t b = kStart; b < result.num_followed; ++b) EXPECT_NE(result.map.component[b], 0U) << b;
+  for (std::size_t b = kStart; b < end_of_followed(laps); ++b) EXPECT_NE(result.map.component[b], 0U) << b;
 }
 
 /// In small portions, with keyframes retired between, as the log is read.
@@ -198,7 +264,7 @@ TEST(Revisits, GoOnWhereTheyWere) {
       known.chain.links.push_back(all.chain.links[i - 1]);
     }
     choose_hypotheses(known.chain);
-    Revisits::Followed result = revisits.follow(known.chain);
+    Revisits::Followed result = revisits.follow(known.chain, {});
     num_retired += num_known(result);
     const std::size_t num_open = known.chain.keyframes.size() - result.num_followed;
     retire_keyframes(result.stand_ins, quick(), result.map, known.chain, loops);
