@@ -62,6 +62,6 @@ done
 
 if [[ $python_tests == yes ]]; then
   section "Python tests"
-  .venv/bin/python -m pytest tests/python
+  .venv/bin/python -m pytest --numprocesses "$jobs" tests/python
 fi
 section "all passed"
