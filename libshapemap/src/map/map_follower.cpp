@@ -9,15 +9,15 @@
 namespace shapemap {
 namespace {
 
-/// Of a robot that is sure of where it is: two places that look otherwise than they should are put down to change.
-constexpr double kSure = 5.0;
-
 /// Where nobody has been, errors add up; by themselves they do not get a robot lost.
 constexpr double kErrorOfNew = 0.25;
 constexpr double kLeastOfNew = 2.0;
 
-/// After a link in doubt, so many keyframes are looked at to decide.
+/// After a link in doubt, so many keyframes are looked at to decide; and where so many tell nothing, none will.
 constexpr std::size_t kLookAhead = 24;
+
+/// So few keyframes do not tell places apart, however many are known.
+constexpr std::size_t kShortest = 16;
 
 /// Places of a stretch that are tried, likeliest first.
 constexpr std::size_t kMostTried = 16;
@@ -25,29 +25,27 @@ constexpr std::size_t kMostTried = 16;
 }  // namespace
 
 MapFollower::MapFollower(const KeyframeChain& chain, const MappingOptions& options, std::size_t home, std::size_t first,
-                         bool is_lost, const std::vector<LoopHypothesis>& loops, KeyframeMap& map)
+                         Bearings bearings, const std::vector<LoopHypothesis>& loops, KeyframeMap& map)
     : chain_(chain),
       options_(options),
       loops_(loops),
       map_(map),
       recognition_(chain, options, home),
       stand_ins_(chain.keyframes.size()),
-      is_lost_(is_lost),
-      log_odds_(kSure),
+      bearings_(bearings),
+      log_odds_(bearings.log_odds),
       open_(first),
-      last_known_(is_lost ? 0 : first - 1) {}
+      last_telling_(first),
+      last_known_(first - 1) {}
 
 std::size_t MapFollower::go(std::size_t last) {
-  for (std::size_t b = open_; b < last && !is_lost_; ++b) {
+  for (std::size_t b = open_; b < last && !bearings_.is_lost; ++b) {
     const bool doubts = is_in_doubt(b);
     if (doubts && b + kLookAhead > last) return open_;
-    if (!link_exists(b) || (doubts && !decide(b))) {
-      get_lost();
-    } else if (!step(b)) {
-      get_lost();
-    }
+    const bool goes_on = link_exists(b) && (!doubts || decide(b)) && step(b);
+    if (!goes_on) get_lost();
   }
-  if (is_lost_) find_way(last);
+  if (bearings_.is_lost) find_way(last);
   return open_;
 }
 
@@ -70,27 +68,37 @@ bool MapFollower::step(std::size_t b) {
   expect(b);
   map_.component[b] = recognition_.home();
   Look seen = recognition_.look(map_, b, b);
-  log_odds_ = std::min(kSure, log_odds_ + seen.log_odds);
-  if (log_odds_ < 0.0) return false;
-  if (seen.stand_in) {
-    map_.map_from_keyframe[b] = map_.map_from_keyframe[seen.stand_in->keyframe] * seen.stand_in->pose.ref_from_query;
-    pending_.emplace_back(b, std::move(*seen.stand_in));
-    recognition_.let_go(b);
-  }
   const bool is_new = !seen.stand_in && seen.log_odds == 0.0;
-  if (is_new && pending_.empty() && open_ == b) {
-    log_odds_ = std::min(log_odds_, std::max(kLeastOfNew, log_odds_ - kErrorOfNew));
-    open_ = b + 1;
-  } else if (log_odds_ == kSure) {
+  if (is_new && pending_.empty()) seen.log_odds = -std::clamp(log_odds_ - kLeastOfNew, 0.0, kErrorOfNew);
+  log_odds_ = std::min(kSureOfPlace, log_odds_ + seen.log_odds);
+  if (log_odds_ < 0.0) return false;
+  const bool tells_nothing = seen.log_odds <= 0.0 && seen.log_odds >= -kErrorOfNew;
+  last_telling_ = tells_nothing ? last_telling_ : b;
+  if (seen.stand_in) {
+    map_.map_from_keyframe[b] = pose_by(map_, *seen.stand_in);
+    recognition_.let_go(b);
+    pending_.emplace_back(b, std::move(*seen.stand_in));
+  }
+  if (log_odds_ == kSureOfPlace || (open_ == b && tells_nothing)) {
+    make_certain(b + 1);
+  } else if (b >= last_telling_ + kLookAhead) {
+    forget_pending();
     make_certain(b + 1);
   }
   return true;
+}
+
+/// They stay in the map themselves.
+void MapFollower::forget_pending() {
+  for (const auto& [keyframe, unused] : pending_) recognition_.keep(keyframe);
+  pending_.clear();
 }
 
 void MapFollower::make_certain(std::size_t end) {
   for (auto& [keyframe, stand_in] : pending_) know(keyframe, std::move(stand_in));
   pending_.clear();
   open_ = end;
+  bearings_.log_odds = log_odds_;
 }
 
 void MapFollower::know(std::size_t b, StandIn stand_in) {
@@ -127,10 +135,8 @@ bool MapFollower::decide(std::size_t b) {
 }
 
 void MapFollower::get_lost() {
-  is_lost_ = true;
-  for (const auto& [keyframe, unused] : pending_) recognition_.keep(keyframe);
-  pending_.clear();
-  last_known_ = 0;
+  bearings_.is_lost = true;
+  forget_pending();
 }
 
 /// Of what may be anywhere, each stretch that links in doubt leave whole is tried at all places where it may be. What
@@ -141,14 +147,14 @@ void MapFollower::find_way(std::size_t last) {
     expect(b);
     map_.component[b] = lost;
   }
-  is_lost_ = true;
   for (std::size_t first = lost; first < last;) {
     const std::size_t end = end_of_stretch(first, last);
-    if (place(first, end)) {
-      open_ = end;
-      is_lost_ = end < last;
+    const std::size_t end_of_placed = place(first, end);
+    if (end_of_placed > first) {
+      open_ = end_of_placed;
+      bearings_ = {open_ < last, kSureOfPlace};
     }
-    first = end;
+    first = end_of_placed > first ? end_of_placed : end;
   }
 }
 
@@ -158,20 +164,20 @@ std::size_t MapFollower::end_of_stretch(std::size_t first, std::size_t last) con
   return end;
 }
 
-bool MapFollower::place(std::size_t first, std::size_t last) {
+/// Returns up to where it is in its place now.
+std::size_t MapFollower::place(std::size_t first, std::size_t last) {
   PlaceChoice places;
+  if (last - first < kShortest) return first;
   std::size_t tried = 0;
   for (const auto& [seed, map_from_seed] : candidates(first, last)) {
     if (places.has(seed - first, map_from_seed)) continue;
     if (++tried > kMostTried) break;
     places.add(recognition_.lay(map_, first, last, seed, map_from_seed));
   }
-  if (places.is_sure()) {
-    settle_in(first, last, places.best());
-    return true;
-  }
   for (std::size_t b = first; b < last; ++b) expect(b);
-  return false;
+  if (!places.is_sure() || places.best().sure_end <= places.best().sure_begin) return first;
+  settle_in(first, places.best());
+  return first + places.best().sure_end;
 }
 
 /// A keyframe each, and where it may be: where the link to the first says, and where loops do.
@@ -196,23 +202,26 @@ std::vector<std::pair<std::size_t, Pose2>> MapFollower::candidates(std::size_t f
   return found;
 }
 
-/// The robot is where the stretch was laid.
-void MapFollower::settle_in(std::size_t first, std::size_t last, LaidStretch stretch) {
-  for (std::size_t b = first; b < last; ++b) {
+/// The robot is where the stretch was laid, as far as that is sure.
+void MapFollower::settle_in(std::size_t first, LaidStretch stretch) {
+  const std::size_t begin = first + stretch.sure_begin;
+  for (std::size_t b = begin; b < first + stretch.sure_end; ++b) {
     map_.map_from_keyframe[b] = stretch.map_from_keyframe[b - first];
     map_.component[b] = recognition_.home();
   }
-  take_link_as_in_map(first);
-  last_known_ = first;
-  for (std::size_t b = first; b < last; ++b) {
+  take_link_as_in_map(begin);
+  last_known_ = begin;
+  for (std::size_t b = begin; b < first + stretch.sure_end; ++b) {
     if (stretch.stand_ins[b - first]) know(b, std::move(*stretch.stand_ins[b - first]));
   }
-  log_odds_ = kSure;
 }
 
 /// Of a link between two keyframes that are both in their places.
 void MapFollower::take_link_as_in_map(std::size_t b) {
-  if (map_.component[b - 1] != recognition_.home()) return;
+  if (map_.component[b - 1] != recognition_.home()) {
+    map_.link_choice[b - 1] = kCut;
+    return;
+  }
   const Pose2 in_map = inverse(map_.map_from_keyframe[b - 1]) * map_.map_from_keyframe[b];
   const std::vector<PoseHypothesis>& hypotheses = chain_.links[b - 1].hypotheses;
   map_.link_choice[b - 1] = kCut;

@@ -15,6 +15,12 @@
 
 namespace shapemap {
 
+/// Where the robot is after the last keyframe that is certain.
+struct Bearings {
+  bool is_lost = false;
+  double log_odds = kSureOfPlace;  ///< that it is where it is expected
+};
+
 /// Goes along keyframes that are new to a map, puts them in their places there, and tells which it knows again. What it
 /// knows counts only when what comes after agrees: of the robot's being where it is expected, each keyframe that is
 /// known raises the odds, and each that shows something else there lowers them. When they are too low, or after a link
@@ -22,19 +28,19 @@ namespace shapemap {
 class MapFollower {
  public:
   /// `map` has links and a place for all keyframes; those before `first` are in theirs. `home` is the component that
-  /// the robot was sure to be in; it is still sure to be at keyframe `first - 1` unless it `is_lost`. `loops` are
-  /// places where keyframes may have been before.
+  /// the robot was sure to be in; `bearings` are those at keyframe `first - 1`. `loops` are places where keyframes may
+  /// have been before.
   MapFollower(const KeyframeChain& chain, const MappingOptions& options, std::size_t home, std::size_t first,
-              bool is_lost, const std::vector<LoopHypothesis>& loops, KeyframeMap& map);
+              Bearings bearings, const std::vector<LoopHypothesis>& loops, KeyframeMap& map);
 
-  /// Along keyframes up to `last`; returns where to go on next time, with is_lost() as it was there: what is not
-  /// certain yet is looked at anew then.
+  /// Along keyframes up to `last`; returns where to go on next time, with the bearings() there: what is not certain yet
+  /// is looked at anew then.
   std::size_t go(std::size_t last);
 
   /// Puts a keyframe where the link to it says.
   void expect(std::size_t b);
 
-  bool is_lost() const { return is_lost_; }
+  const Bearings& bearings() const { return bearings_; }
   /// Per keyframe: what it was known by.
   std::vector<std::optional<StandIn>>& stand_ins() { return stand_ins_; }
 
@@ -44,6 +50,7 @@ class MapFollower {
 
   bool step(std::size_t b);
   void make_certain(std::size_t end);
+  void forget_pending();
   void know(std::size_t b, StandIn stand_in);
   void hold_back_from(std::size_t b);
 
@@ -51,9 +58,9 @@ class MapFollower {
   void get_lost();
   void find_way(std::size_t last);
   std::size_t end_of_stretch(std::size_t first, std::size_t last) const;
-  bool place(std::size_t first, std::size_t last);
+  std::size_t place(std::size_t first, std::size_t last);
   std::vector<std::pair<std::size_t, Pose2>> candidates(std::size_t first, std::size_t last) const;
-  void settle_in(std::size_t first, std::size_t last, LaidStretch stretch);
+  void settle_in(std::size_t first, LaidStretch stretch);
   void take_link_as_in_map(std::size_t b);
 
   const KeyframeChain& chain_;
@@ -63,11 +70,12 @@ class MapFollower {
   Recognition recognition_;
   std::vector<std::optional<StandIn>> stand_ins_;
 
-  bool is_lost_;
-  double log_odds_;                                       ///< that the robot is where it is expected
+  Bearings bearings_;                                     ///< at keyframe open_ - 1
+  double log_odds_;                                       ///< that the robot is where it is expected now
   std::size_t open_;                                      ///< the first keyframe that is not certain yet
   std::vector<std::pair<std::size_t, StandIn>> pending_;  ///< known again from there on, if it is true
-  std::size_t last_known_;                                ///< of this go; 0: none
+  std::size_t last_telling_;                              ///< that raised or lowered the odds, or the first
+  std::size_t last_known_;                                ///< or the one before the first
 };
 
 }  // namespace shapemap

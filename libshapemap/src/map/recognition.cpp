@@ -14,23 +14,23 @@ namespace {
 constexpr double kKnownTells = 0.5;
 constexpr double kUnknownTells = -2.0;
 
-/// Then a place is given up: it would take twelve that are known to make up for it.
-constexpr double kHopeless = -6.0;
-
 }  // namespace
 
 const Pose2& link_in_map(const KeyframeChain& chain, const KeyframeMap& map, std::size_t b) {
   return chain.links[b - 1].hypotheses[static_cast<std::size_t>(map.link_choice[b - 1])].ref_from_query;
 }
 
+Pose2 pose_by(const KeyframeMap& map, const StandIn& stand_in) {
+  return map.map_from_keyframe[stand_in.keyframe] * stand_in.pose.ref_from_query;
+}
+
 Look Recognition::look(const KeyframeMap& map, std::size_t b, std::size_t end) const {
   const std::vector<std::size_t> there = at_place(map, b, end);
-  if (there.empty()) return {};
   std::vector<StandIn> found = stand_ins_for(chain_, map.map_from_keyframe, b, there, 1, options_);
-  if (found.empty()) return {std::nullopt, kUnknownTells};
-  // Those just before it show the same wherever the two are.
-  const bool tells = found.front().keyframe + kKeyframesInUse < b;
-  return {std::move(found.front()), tells ? kKnownTells : 0.0};
+  // Those just before it show the same, or do not, wherever the two are.
+  const auto tells = [&](std::size_t a) { return a + kKeyframesInUse < b; };
+  if (!found.empty()) return {std::move(found.front()), tells(found.front().keyframe) ? kKnownTells : 0.0};
+  return {std::nullopt, std::any_of(there.begin(), there.end(), tells) ? kUnknownTells : 0.0};
 }
 
 LaidStretch Recognition::lay(KeyframeMap& map, std::size_t first, std::size_t last, std::size_t seed,
@@ -38,21 +38,28 @@ LaidStretch Recognition::lay(KeyframeMap& map, std::size_t first, std::size_t la
   LaidStretch laid;
   laid.stand_ins.resize(last - first);
   laid.map_from_keyframe.assign(last - first, {kPiecesApart_m, kPiecesApart_m, 0.0});
+  laid.sure_begin = laid.sure_end = seed - first;
+  double log_odds = kSureOfPlace;  // of one way from the seed
   const auto lay_one = [&](std::size_t b, const Pose2& expected) {
     map.map_from_keyframe[b] = expected;
     Look seen = look(map, b, first);
     laid.log_odds += seen.log_odds;
-    if (seen.stand_in) {
-      map.map_from_keyframe[b] = map.map_from_keyframe[seen.stand_in->keyframe] * seen.stand_in->pose.ref_from_query;
-    }
+    log_odds = std::min(kSureOfPlace, log_odds + seen.log_odds);
+    if (seen.stand_in) map.map_from_keyframe[b] = pose_by(map, *seen.stand_in);
     laid.map_from_keyframe[b - first] = map.map_from_keyframe[b];
     laid.stand_ins[b - first] = std::move(seen.stand_in);
   };
   lay_one(seed, map_from_seed);
-  for (std::size_t b = seed + 1; b < last && laid.log_odds > kHopeless; ++b) {
+  const double at_seed = log_odds;
+  for (std::size_t b = seed + 1; log_odds >= 0.0; ++b) {
+    if (log_odds == kSureOfPlace) laid.sure_end = b - first;
+    if (b == last) break;
     lay_one(b, map.map_from_keyframe[b - 1] * link_in_map(chain_, map, b));
   }
-  for (std::size_t b = seed; b > first && laid.log_odds > kHopeless; --b) {
+  log_odds = at_seed;
+  for (std::size_t b = seed; log_odds >= 0.0; --b) {
+    if (log_odds == kSureOfPlace) laid.sure_begin = b - first;
+    if (b == first) break;
     lay_one(b - 1, map.map_from_keyframe[b] * inverse(link_in_map(chain_, map, b)));
   }
   return laid;

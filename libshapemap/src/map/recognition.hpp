@@ -19,11 +19,17 @@ struct Look {
                                     ///< else was seen, and 0 where nobody has been
 };
 
+/// The odds of a robot that is sure of where it is: two places that look otherwise than they should are put down to
+/// change, a third is not.
+inline constexpr double kSureOfPlace = 5.0;
+
 /// A stretch of the chain, laid at a place of the map.
 struct LaidStretch {
   double log_odds = 0.0;                 ///< that the place is right, of all its keyframes
   std::vector<Pose2> map_from_keyframe;  ///< far away those that were not looked at, as it was soon seen to be wrong
   std::vector<std::optional<StandIn>> stand_ins;
+  std::size_t sure_begin = 0;  ///< it is as it was laid from this one of its keyframes,
+  std::size_t sure_end = 0;    ///< up to before this one
 };
 
 /// Holds keyframes against the keyframes of a map, of which only the component `home` counts.
@@ -36,7 +42,7 @@ class Recognition {
   Look look(const KeyframeMap& map, std::size_t b, std::size_t end) const;
 
   /// Keyframes `first` to before `last`, from `seed` on in both directions: each where the link to the one before puts
-  /// it, and then where the map knows it; against those before `first`.
+  /// it, and then where the map knows it; against those before `first`. What `map` has for them is overwritten.
   LaidStretch lay(KeyframeMap& map, std::size_t first, std::size_t last, std::size_t seed,
                   const Pose2& map_from_seed) const;
 
@@ -57,5 +63,8 @@ class Recognition {
 
 /// What link `b - 1` to `b` says where `map` takes one of its hypotheses.
 const Pose2& link_in_map(const KeyframeChain& chain, const KeyframeMap& map, std::size_t b);
+
+/// Where a keyframe is by the one that stands for it.
+Pose2 pose_by(const KeyframeMap& map, const StandIn& stand_in);
 
 }  // namespace shapemap

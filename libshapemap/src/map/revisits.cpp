@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "map_follower.hpp"
 #include "shapemap/graph/loop_closing.hpp"
 
 namespace shapemap {
@@ -29,7 +28,7 @@ void add_link_constraints(const KeyframeChain& chain, std::size_t first, Keyfram
 }  // namespace
 
 void Revisits::start(const KeyframeChain& chain, const KeyframeMap& map, std::size_t num_settled) {
-  is_lost_ = false;
+  bearings_ = {};
   home_position_ = chain.keyframes[map.component[num_settled - 1]].position_index;
   renew(map, chain.keyframes.size() - num_settled);
 }
@@ -47,12 +46,18 @@ Revisits::Followed Revisits::follow(const KeyframeChain& chain, const std::vecto
       std::lower_bound(chain.keyframes.begin(), chain.keyframes.end(), home_position_,
                        [](const Keyframe& k, std::size_t position) { return k.position_index < position; });
   const std::size_t home_component = result.map.component[static_cast<std::size_t>(home - chain.keyframes.begin())];
-  MapFollower follower(chain, options_, home_component, first, is_lost_, loops, result.map);
+  MapFollower follower(chain, options_, home_component, first, bearings_, loops, result.map);
   result.num_followed = follower.go(std::max(first, last));
   for (std::size_t b = result.num_followed; b < count; ++b) follower.expect(b);
   add_link_constraints(chain, first - 1, result.map);
-  is_lost_ = follower.is_lost();
+  bearings_ = follower.bearings();
   result.stand_ins = std::move(follower.stand_ins());
+  // A link that may still change must not become what the map says: it would when the keyframe before it went.
+  if (bearings_.is_lost) {
+    result.stand_ins[result.num_followed - 1].reset();
+  } else if (result.num_followed > first) {
+    result.stand_ins[--result.num_followed].reset();
+  }
   const std::vector<bool> may_go = settled_keyframes(log_, chain, result.map, options_);
   for (std::size_t b = first; b < count; ++b) {
     if (!may_go[b]) result.stand_ins[b].reset();

@@ -7,6 +7,7 @@
 
 #include "keyframe_chain.hpp"
 #include "keyframe_map.hpp"
+#include "map_follower.hpp"
 #include "shapemap/graph/loop_clusters.hpp"
 #include "shapemap/map/mapping_options.hpp"
 #include "stand_ins.hpp"
@@ -32,7 +33,7 @@ class Revisits {
   Followed follow(const KeyframeChain& chain, const std::vector<LoopHypothesis>& loops);
 
   /// Whether loops help: the robot does not know where it is in the map.
-  bool is_lost() const { return is_lost_; }
+  bool is_lost() const { return bearings_.is_lost; }
 
   /// Without the keyframes that were retired; the last `num_open` may still change.
   void renew(KeyframeMap map, std::size_t num_open);
@@ -42,7 +43,7 @@ class Revisits {
   const MappingOptions& options_;
   KeyframeMap settled_;
   std::size_t home_position_ = 0;  ///< of the first keyframe of the part of the map that the robot was sure to be in
-  bool is_lost_ = false;
+  Bearings bearings_;
 };
 
 }  // namespace shapemap

@@ -126,10 +126,12 @@ class Reading {
     while (growth_.extend(next)) {
       const auto start = std::chrono::steady_clock::now();
       if (chain().keyframes.size() < most) {
-        follow();
-      } else {
-        settle();
+        if (has_settled_) follow();
+      } else if (settle()) {
+        has_settled_ = true;
         most = std::max(settle_at, 2 * chain().keyframes.size());
+      } else {
+        most = chain().keyframes.size() + settle_at / 2;
       }
       next = std::min(most, chain().keyframes.size() + kFollowedAtOnce);
       result_.times.loops_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -140,13 +142,18 @@ class Reading {
   LoopKnowledge& known() { return known_; }
 
  private:
-  void settle() {
+  /// False where the map is not right yet: what it has at one place does not look the same. The more there is of the
+  /// log, the more loops tell.
+  bool settle() {
     find_loops(chain(), chain().keyframes.size() - kKeyframesInUse, options_, observer_, store_, known_);
-    if (!observer_.keep_going()) return;
+    if (!observer_.keep_going()) return false;
     KeyframeMap map = map_with_loops(chain(), known_.hypotheses, options_, observer_);
-    if (!observer_.keep_going()) return;
-    retire(find_stand_ins(log_, chain(), map, options_), map);
+    if (!observer_.keep_going()) return false;
+    const StandIns stand_ins = find_stand_ins(log_, chain(), map, options_);
+    if (!stand_ins.are_of_right_map()) return false;
+    retire(stand_ins.of_keyframe, map);
     revisits_.start(chain(), map, chain().keyframes.size() - kKeyframesInUse);
+    return true;
   }
 
   void follow() {
@@ -182,6 +189,7 @@ class Reading {
   MapResult& result_;
   RobustChain growth_;
   Revisits revisits_;
+  bool has_settled_ = false;
   LoopKnowledge known_;
 };
 

@@ -60,23 +60,32 @@ std::vector<bool> settled_keyframes(const Log& log, const KeyframeChain& chain, 
   return settled;
 }
 
-std::vector<std::optional<StandIn>> find_stand_ins(const Log& log, const KeyframeChain& chain, const KeyframeMap& map,
-                                                   const MappingOptions& options) {
+StandIns find_stand_ins(const Log& log, const KeyframeChain& chain, const KeyframeMap& map,
+                        const MappingOptions& options) {
   const std::vector<bool> settled = settled_keyframes(log, chain, map, options);
   const std::vector<std::vector<std::size_t>> earlier = earlier_at_place(map, options.keyframes);
   std::vector<std::vector<StandIn>> fitting(settled.size());
   parallel_for(settled.size(), options.chain.threads, [&](std::size_t b) {
     if (settled[b]) fitting[b] = stand_ins_for(chain, map.map_from_keyframe, b, earlier[b], kStandInsTried, options);
   });
-  std::vector<std::optional<StandIn>> stand_ins(settled.size());
+  StandIns result;
+  result.of_keyframe.resize(settled.size());
   for (std::size_t b = 0; b < settled.size(); ++b) {
+    if (!settled[b]) continue;
+    const auto is_long_before = [&](std::size_t a) { return a + kKeyframesInUse < b; };
+    const bool again = std::any_of(earlier[b].begin(), earlier[b].end(), is_long_before);
+    const bool known = std::any_of(fitting[b].begin(), fitting[b].end(),
+                                   [&](const StandIn& candidate) { return is_long_before(candidate.keyframe); });
+    const bool all_tried = fitting[b].size() < kStandInsTried;
+    result.num_again += again && (known || all_tried) ? 1 : 0;
+    result.num_known += known ? 1 : 0;
     for (const StandIn& candidate : fitting[b]) {
-      if (stand_ins[candidate.keyframe]) continue;  // it is not kept itself
-      stand_ins[b] = candidate;
+      if (result.of_keyframe[candidate.keyframe]) continue;  // it is not kept itself
+      result.of_keyframe[b] = candidate;
       break;
     }
   }
-  return stand_ins;
+  return result;
 }
 
 }  // namespace shapemap

@@ -43,8 +43,16 @@ std::vector<StandIn> stand_ins_for(const KeyframeChain& chain, const std::vector
 std::vector<bool> settled_keyframes(const Log& log, const KeyframeChain& chain, const KeyframeMap& map,
                                     const MappingOptions& options);
 
-/// Per keyframe: which one can stand for it, where one can and it may go.
-std::vector<std::optional<StandIn>> find_stand_ins(const Log& log, const KeyframeChain& chain, const KeyframeMap& map,
-                                                   const MappingOptions& options);
+/// What a map says of each of its keyframes at the place of others.
+struct StandIns {
+  std::vector<std::optional<StandIn>> of_keyframe;  ///< which one can stand for it, where it may go
+  std::size_t num_again = 0;                        ///< keyframes at a place where the robot had been long before
+  std::size_t num_known = 0;                        ///< those of them that show the same as it did then
+
+  /// Of a map that is right, nearly all do; where rows of like rooms are laid on each other, a fourth does not.
+  bool are_of_right_map() const { return static_cast<double>(num_known) >= 0.95 * static_cast<double>(num_again); }
+};
+StandIns find_stand_ins(const Log& log, const KeyframeChain& chain, const KeyframeMap& map,
+                        const MappingOptions& options);
 
 }  // namespace shapemap

@@ -39,7 +39,7 @@ std::vector<Pose2> poses_of(const MapResult& result) {
 TEST(StandIns, AreEarlierKeyframesAtTheSamePlace) {
   const Laps& laps = two_laps();
   const KnownChain known(laps);
-  const auto stand_ins = find_stand_ins(laps.log, known.chain, known.map, quick());
+  const auto stand_ins = find_stand_ins(laps.log, known.chain, known.map, quick()).of_keyframe;
   ASSERT_EQ(stand_ins.size(), laps.truth.size());
   std::size_t found = 0;
   for (std::size_t b = 0; b < stand_ins.size(); ++b) {
@@ -56,27 +56,43 @@ TEST(StandIns, AreEarlierKeyframesAtTheSamePlace) {
   EXPECT_GT(found, test::kRingLap / 4);  // the robot sways by more than 20 degrees
 }
 
+TEST(StandIns, TellARightMapFromOneThatIsFolded) {
+  const Laps& laps = two_laps();
+  const KnownChain right(laps);
+  const StandIns of_right = find_stand_ins(laps.log, right.chain, right.map, quick());
+  EXPECT_GT(of_right.num_again, test::kRingLap / 4);
+  EXPECT_TRUE(of_right.are_of_right_map());
+  KnownChain folded(laps);
+  for (std::size_t b = test::kRingLap; b < laps.truth.size(); ++b) {  // the second lap, a bit further round
+    folded.map.map_from_keyframe[b] = laps.truth[b - 5];
+  }
+  const StandIns of_folded = find_stand_ins(laps.log, folded.chain, folded.map, quick());
+  EXPECT_GT(of_folded.num_again, test::kRingLap / 4);
+  EXPECT_FALSE(of_folded.are_of_right_map());
+  EXPECT_TRUE(StandIns().are_of_right_map());
+}
+
 TEST(StandIns, AreNotForKeyframesInDoubt) {
   const Laps& laps = two_laps();
   KnownChain known(laps);
-  const auto all = find_stand_ins(laps.log, known.chain, known.map, quick());
+  const auto all = find_stand_ins(laps.log, known.chain, known.map, quick()).of_keyframe;
   const auto first = std::find_if(all.begin(), all.end(), [](const auto& stand_in) { return stand_in.has_value(); });
   ASSERT_NE(first, all.end());
   const auto b = static_cast<std::size_t>(first - all.begin());
   known.map.held_by_loops[b] = false;
   known.chain.links[b].choice.margin = 0.01;  // another place fits as well
   ASSERT_LT(link_probability(known.chain.links[b], {}), 0.6);
-  EXPECT_FALSE(find_stand_ins(laps.log, known.chain, known.map, quick())[b]);
+  EXPECT_FALSE(find_stand_ins(laps.log, known.chain, known.map, quick()).of_keyframe[b]);
   known.map.held_by_loops[b] = true;
-  EXPECT_TRUE(find_stand_ins(laps.log, known.chain, known.map, quick())[b]);
+  EXPECT_TRUE(find_stand_ins(laps.log, known.chain, known.map, quick()).of_keyframe[b]);
   known.map.link_choice[b] = -1;
-  EXPECT_FALSE(find_stand_ins(laps.log, known.chain, known.map, quick())[b]);
+  EXPECT_FALSE(find_stand_ins(laps.log, known.chain, known.map, quick()).of_keyframe[b]);
 }
 
 TEST(RetiredKeyframes, LeaveAChainThatSaysWhatTheMapDid) {
   const Laps& laps = two_laps();
   KnownChain known(laps);
-  const auto stand_ins = find_stand_ins(laps.log, known.chain, known.map, quick());
+  const auto stand_ins = find_stand_ins(laps.log, known.chain, known.map, quick()).of_keyframe;
   PoseHypothesis here;
   here.ref_from_query = {0.1, 0.2, 0.3};
   const std::size_t retired = static_cast<std::size_t>(

@@ -39,13 +39,14 @@ const MappingOptions& quick() {
   return options;
 }
 
-/// What is followed after `kSettled` keyframes, whose part of the map is right.
-Revisits::Followed followed(const Laps& laps, const KnownChain& known, const std::vector<LoopHypothesis>& loops = {}) {
+/// What is followed after `num_settled` keyframes, whose part of the map is right.
+Revisits::Followed followed(const Laps& laps, const KnownChain& known, const std::vector<LoopHypothesis>& loops = {},
+                            std::size_t num_settled = kSettled) {
   Revisits revisits(laps.log, quick());
   KeyframeMap map = known.map;
-  std::copy(laps.truth.begin(), laps.truth.begin() + static_cast<std::ptrdiff_t>(kSettled),
+  std::copy(laps.truth.begin(), laps.truth.begin() + static_cast<std::ptrdiff_t>(num_settled),
             map.map_from_keyframe.begin());
-  revisits.start(known.chain, map, kSettled);
+  revisits.start(known.chain, map, num_settled);
   return revisits.follow(known.chain, loops);
 }
 
@@ -54,8 +55,8 @@ std::size_t num_known(const Revisits::Followed& followed, std::size_t first = 0)
                                                 followed.stand_ins.end(), [](const auto& s) { return s.has_value(); }));
 }
 
-/// The last few keyframes are left for later.
-std::size_t end_of_followed(const Laps& laps) { return laps.truth.size() - kKeyframesInUse; }
+/// The last few keyframes are left for later, and the one before them with the link to them.
+std::size_t end_of_followed(const Laps& laps) { return laps.truth.size() - kKeyframesInUse - 1; }
 
 /// The poses of a robot whose each step is off by so much.
 std::vector<Pose2> drifting(const std::vector<Pose2>& truth, const Pose2& error) {
@@ -214,6 +215,33 @@ TEST(Revisits, GetLostWhereSomethingElseIsSeen) {
   const Revisits::Followed result = followed(laps, known);
   EXPECT_LE(result.num_followed, kWrong + 2);
   EXPECT_EQ(num_known(result, kWrong), 0U);
+}
+
+/// Errors that add up where nobody has been get no robot lost, and none of those keyframes goes.
+TEST(Revisits, GoOnWhereNobodyHasBeen) {
+  const Laps& laps = two_laps();
+  constexpr std::size_t kHalf = test::kRingLap / 2;
+  const Revisits::Followed result = followed(laps, KnownChain(laps), {}, kHalf);
+  EXPECT_EQ(result.num_followed, end_of_followed(laps));
+  for (std::size_t b = kHalf; b + 2 < test::kRingLap; ++b) EXPECT_FALSE(result.stand_ins[b]) << b;
+  EXPECT_GT(num_known(result), (end_of_followed(laps) - test::kRingLap) / 2);
+  EXPECT_EQ(result.map.component[result.num_followed - 1], 0U);
+}
+
+/// What is not certain yet stays in doubt also when the keyframe before it is known again, and goes.
+TEST(Revisits, LeaveTheLinkToWhatComesNextAsItIs) {
+  const Laps& laps = two_laps();
+  constexpr std::size_t kWrong = kSettled + 4;
+  for (const bool lost : {false, true}) {
+    KnownChain known = lost ? doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}) : KnownChain(laps);
+    Revisits::Followed result = followed(laps, known);
+    const std::size_t next = laps.truth.size() - result.num_followed;
+    LoopKnowledge loops;
+    retire_keyframes(result.stand_ins, quick(), result.map, known.chain, loops);
+    const std::size_t first_open = known.chain.keyframes.size() - next;
+    EXPECT_FALSE(known.chain.links[first_open].settled_covariance);
+    EXPECT_TRUE(!lost || !known.chain.links[first_open - 1].settled_covariance);
+  }
 }
 
 TEST(Revisits, ForgiveAPlaceThatHasChanged) {
