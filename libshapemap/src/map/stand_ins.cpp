@@ -28,6 +28,16 @@ std::vector<std::vector<std::size_t>> earlier_at_place(const KeyframeMap& map, c
   return earlier;
 }
 
+/// Keeps those that follow or precede a keyframe which shows something else than those at its place did.
+void keep_near(const std::vector<bool>& is_unknown, std::vector<std::optional<StandIn>>& stand_ins) {
+  constexpr std::size_t kNear = 24;
+  for (std::size_t b = 0; b < is_unknown.size(); ++b) {
+    if (!is_unknown[b]) continue;
+    const std::size_t end = std::min(b + kNear + 1, stand_ins.size());
+    for (std::size_t i = b - std::min(b, kNear); i < end; ++i) stand_ins[i].reset();
+  }
+}
+
 }  // namespace
 
 std::vector<StandIn> stand_ins_for(const KeyframeChain& chain, const std::vector<Pose2>& map_from_keyframe,
@@ -70,21 +80,23 @@ StandIns find_stand_ins(const Log& log, const KeyframeChain& chain, const Keyfra
   });
   StandIns result;
   result.of_keyframe.resize(settled.size());
+  std::vector<bool> is_unknown(settled.size(), false);
   for (std::size_t b = 0; b < settled.size(); ++b) {
     if (!settled[b]) continue;
     const auto is_long_before = [&](std::size_t a) { return a + kKeyframesInUse < b; };
     const bool again = std::any_of(earlier[b].begin(), earlier[b].end(), is_long_before);
     const bool known = std::any_of(fitting[b].begin(), fitting[b].end(),
                                    [&](const StandIn& candidate) { return is_long_before(candidate.keyframe); });
-    const bool all_tried = fitting[b].size() < kStandInsTried;
-    result.num_again += again && (known || all_tried) ? 1 : 0;
-    result.num_known += known ? 1 : 0;
+    is_unknown[b] = again && !known && fitting[b].size() < kStandInsTried;  // or else not all were tried
+    if (known) ++result.num_known;
+    if (known || is_unknown[b]) ++result.num_again;
     for (const StandIn& candidate : fitting[b]) {
       if (result.of_keyframe[candidate.keyframe]) continue;  // it is not kept itself
       result.of_keyframe[b] = candidate;
       break;
     }
   }
+  keep_near(is_unknown, result.of_keyframe);
   return result;
 }
 
