@@ -19,6 +19,9 @@ constexpr std::size_t kLookAhead = 24;
 /// So few keyframes do not tell places apart, however many are known.
 constexpr std::size_t kShortest = 16;
 
+/// A wrong way shows within so many keyframes: until then, what was known on it does not count.
+constexpr std::size_t kLag = 12;
+
 /// Places of a stretch that are tried, likeliest first.
 constexpr std::size_t kMostTried = 16;
 
@@ -35,15 +38,20 @@ MapFollower::MapFollower(const KeyframeChain& chain, const MappingOptions& optio
       bearings_(bearings),
       log_odds_(bearings.log_odds),
       open_(first),
+      good_(first),
       last_telling_(first),
       last_known_(first - 1) {}
 
 std::size_t MapFollower::go(std::size_t last) {
   for (std::size_t b = open_; b < last && !bearings_.is_lost; ++b) {
     const bool doubts = is_in_doubt(b);
-    if (doubts && b + kLookAhead > last) return open_;
-    const bool goes_on = link_exists(b) && (!doubts || decide(b)) && step(b);
-    if (!goes_on) get_lost();
+    if (doubts && b + kLookAhead > last) break;
+    if (!link_exists(b) || (doubts && !decide(b))) {
+      make_certain(good_);  // it is not known where the robot went on, but it is where it was
+      get_lost();
+    } else if (!step(b)) {
+      get_lost();
+    }
   }
   if (bearings_.is_lost) find_way(last);
   return open_;
@@ -69,7 +77,7 @@ bool MapFollower::step(std::size_t b) {
   map_.component[b] = recognition_.home();
   Look seen = recognition_.look(map_, b, b);
   const bool is_new = !seen.stand_in && seen.log_odds == 0.0;
-  if (is_new && pending_.empty()) seen.log_odds = -std::clamp(log_odds_ - kLeastOfNew, 0.0, kErrorOfNew);
+  if (is_new && good_ == b) seen.log_odds = -std::clamp(log_odds_ - kLeastOfNew, 0.0, kErrorOfNew);
   log_odds_ = std::min(kSureOfPlace, log_odds_ + seen.log_odds);
   if (log_odds_ < 0.0) return false;
   const bool tells_nothing = seen.log_odds <= 0.0 && seen.log_odds >= -kErrorOfNew;
@@ -79,11 +87,11 @@ bool MapFollower::step(std::size_t b) {
     recognition_.let_go(b);
     pending_.emplace_back(b, std::move(*seen.stand_in));
   }
-  if (log_odds_ == kSureOfPlace || (open_ == b && tells_nothing)) {
-    make_certain(b + 1);
-  } else if (b >= last_telling_ + kLookAhead) {
-    forget_pending();
-    make_certain(b + 1);
+  const bool nothing_will = b >= last_telling_ + kLookAhead;
+  if (nothing_will && log_odds_ < kSureOfPlace) forget_pending();
+  if (log_odds_ == kSureOfPlace || (good_ == b && tells_nothing) || nothing_will) {
+    good_ = b + 1;
+    make_certain(good_ - std::min(good_, kLag));
   }
   return true;
 }
@@ -95,8 +103,10 @@ void MapFollower::forget_pending() {
 }
 
 void MapFollower::make_certain(std::size_t end) {
-  for (auto& [keyframe, stand_in] : pending_) know(keyframe, std::move(stand_in));
-  pending_.clear();
+  if (end <= open_) return;
+  auto open = pending_.begin();
+  for (; open != pending_.end() && open->first < end; ++open) know(open->first, std::move(open->second));
+  pending_.erase(pending_.begin(), open);
   open_ = end;
   bearings_.log_odds = log_odds_;
 }

@@ -73,6 +73,7 @@ class MapFollower {
   Bearings bearings_;                                     ///< at keyframe open_ - 1
   double log_odds_;                                       ///< that the robot is where it is expected now
   std::size_t open_;                                      ///< the first keyframe that is not certain yet
+  std::size_t good_;                                      ///< the first that will not be without those to come
   std::vector<std::pair<std::size_t, StandIn>> pending_;  ///< known again from there on, if it is true
   std::size_t last_telling_;                              ///< that raised or lowered the odds, or the first
   std::size_t last_known_;                                ///< or the one before the first
