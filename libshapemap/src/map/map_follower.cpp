@@ -150,14 +150,15 @@ void MapFollower::get_lost() {
 }
 
 /// Of what may be anywhere, each stretch that links in doubt leave whole is tried at all places where it may be. What
-/// comes before one that is found stays apart until all of the map is solved.
+/// comes before one that is found stays apart until all of the map is solved; and so does what comes after a gap, where
+/// another log starts or nothing fits: that two logs are of one place takes more.
 void MapFollower::find_way(std::size_t last) {
   const std::size_t lost = open_;
   for (std::size_t b = lost; b < last; ++b) {
     expect(b);
     map_.component[b] = lost;
   }
-  for (std::size_t first = lost; first < last;) {
+  for (std::size_t first = lost; first < last && !chain_.links[first - 1].hypotheses.empty();) {
     const std::size_t end = end_of_stretch(first, last);
     const std::size_t end_of_placed = place(first, end);
     if (end_of_placed > first) {

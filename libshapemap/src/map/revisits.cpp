@@ -25,11 +25,22 @@ void add_link_constraints(const KeyframeChain& chain, std::size_t first, Keyfram
   }
 }
 
+/// The last of the first `end` keyframes of which the place is certain: others hang together with it.
+std::size_t last_certain(const KeyframeMap& map, std::size_t end) {
+  std::vector<std::size_t> size(map.component.size(), 0);
+  for (const std::size_t component : map.component) ++size[component];
+  std::size_t last = end - 1;
+  while (last > 0 && size[map.component[last]] == 1) --last;
+  return last;
+}
+
 }  // namespace
 
 void Revisits::start(const KeyframeChain& chain, const KeyframeMap& map, std::size_t num_settled) {
+  const std::size_t last = last_certain(map, num_settled);
   bearings_ = {};
-  home_position_ = chain.keyframes[map.component[num_settled - 1]].position_index;
+  bearings_.is_lost = last + 1 < num_settled;
+  home_position_ = chain.keyframes[map.component[last]].position_index;
   renew(map, chain.keyframes.size() - num_settled);
 }
 

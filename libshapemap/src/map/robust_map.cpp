@@ -151,6 +151,9 @@ class Reading {
     if (!observer_.keep_going()) return false;
     const StandIns stand_ins = find_stand_ins(log_, chain(), map, options_);
     if (!stand_ins.are_of_right_map()) return false;
+    for (std::size_t b = 0; b < map.component.size(); ++b) {
+      if (stand_ins.is_in_doubt[b]) map.component[b] = b;  // the robot is not to be followed there
+    }
     retire(stand_ins.of_keyframe, map);
     revisits_.start(chain(), map, chain().keyframes.size() - kKeyframesInUse);
     return true;

@@ -28,14 +28,16 @@ std::vector<std::vector<std::size_t>> earlier_at_place(const KeyframeMap& map, c
   return earlier;
 }
 
-/// Keeps those that follow or precede a keyframe which shows something else than those at its place did.
-void keep_near(const std::vector<bool>& is_unknown, std::vector<std::optional<StandIn>>& stand_ins) {
+/// Those that follow or precede such a one closely.
+std::vector<bool> near(const std::vector<bool>& is_unknown) {
   constexpr std::size_t kNear = 24;
+  std::vector<bool> result(is_unknown.size(), false);
   for (std::size_t b = 0; b < is_unknown.size(); ++b) {
     if (!is_unknown[b]) continue;
-    const std::size_t end = std::min(b + kNear + 1, stand_ins.size());
-    for (std::size_t i = b - std::min(b, kNear); i < end; ++i) stand_ins[i].reset();
+    const std::size_t end = std::min(b + kNear + 1, result.size());
+    for (std::size_t i = b - std::min(b, kNear); i < end; ++i) result[i] = true;
   }
+  return result;
 }
 
 }  // namespace
@@ -96,7 +98,10 @@ StandIns find_stand_ins(const Log& log, const KeyframeChain& chain, const Keyfra
       break;
     }
   }
-  keep_near(is_unknown, result.of_keyframe);
+  result.is_in_doubt = near(is_unknown);
+  for (std::size_t b = 0; b < settled.size(); ++b) {
+    if (result.is_in_doubt[b]) result.of_keyframe[b].reset();
+  }
   return result;
 }
 

@@ -46,6 +46,7 @@ std::vector<bool> settled_keyframes(const Log& log, const KeyframeChain& chain, 
 /// What a map says of each of its keyframes at the place of others.
 struct StandIns {
   std::vector<std::optional<StandIn>> of_keyframe;  ///< which one can stand for it, where it may go
+  std::vector<bool> is_in_doubt;                    ///< near one that shows something else than its place did before
   std::size_t num_again = 0;                        ///< keyframes at a place where the robot had been long before
   std::size_t num_known = 0;                        ///< those of them that show the same as it did then
 

@@ -69,6 +69,11 @@ TEST(StandIns, TellARightMapFromOneThatIsFolded) {
   const StandIns of_folded = find_stand_ins(laps.log, folded.chain, folded.map, quick());
   EXPECT_GT(of_folded.num_again, test::kRingLap / 4);
   EXPECT_FALSE(of_folded.are_of_right_map());
+  EXPECT_THAT(of_right.is_in_doubt, testing::Each(false));
+  EXPECT_THAT(of_folded.is_in_doubt, testing::Contains(true));
+  for (std::size_t b = 0; b < laps.truth.size(); ++b) {
+    EXPECT_FALSE(of_folded.is_in_doubt[b] && of_folded.of_keyframe[b]) << b;
+  }
   EXPECT_TRUE(StandIns().are_of_right_map());
 }
 

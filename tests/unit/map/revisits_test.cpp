@@ -266,6 +266,7 @@ TEST(Revisits, KnowNothingAgainInAnotherLog) {
   const Revisits::Followed result = followed(laps, known);
   EXPECT_EQ(result.map.link_choice[kStart - 1], kCut);
   EXPECT_EQ(num_known(result, kStart), 0U);
+  EXPECT_EQ(num_known(followed(laps, known, {loop_to(laps, kStart + 9)}), kStart), 0U);
   for (std::size_t b = kStart; b < end_of_followed(laps); ++b) EXPECT_NE(result.map.component[b], 0U) << b;
 }
 
