@@ -9,8 +9,8 @@
 namespace shapemap {
 namespace {
 
-/// At the right place 95 % of keyframes are known or more, and at one that looks alike about 60 %: of logarithms of
-/// these odds. (Measured: more than 99 %.)
+/// As if at the right place 95 % of keyframes were known, and at one that looks alike 60 %. (At the right place it is
+/// nearly all of them; but things are moved.)
 constexpr double kKnownTells = 0.5;
 constexpr double kUnknownTells = -2.0;
 
