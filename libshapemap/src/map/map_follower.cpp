@@ -16,7 +16,7 @@ constexpr double kLeastOfNew = 2.0;
 /// After a link in doubt, so many keyframes are looked at to decide; and where so many tell nothing, none will.
 constexpr std::size_t kLookAhead = 24;
 
-/// So few keyframes do not tell places apart, however many are known.
+/// Fewer keyframes do not tell places apart, even when all are known.
 constexpr std::size_t kShortest = 16;
 
 /// A wrong way shows within so many keyframes: until then, what was known on it does not count.
@@ -177,8 +177,8 @@ std::size_t MapFollower::end_of_stretch(std::size_t first, std::size_t last) con
 
 /// Returns up to where it is in its place now.
 std::size_t MapFollower::place(std::size_t first, std::size_t last) {
-  PlaceChoice places;
   if (last - first < kShortest) return first;
+  PlaceChoice places;
   std::size_t tried = 0;
   for (const auto& [seed, map_from_seed] : candidates(first, last)) {
     if (places.has(seed - first, map_from_seed)) continue;
