@@ -16,6 +16,7 @@ from .robot import Drive
 from .sensor import SensorOptions, measure
 from .simulation import Simulation, SimulationOptions
 from .streams import stream
+from .world import World
 
 SICK = SensorOptions(num_beams=181, first_angle_deg=-90.0, angle_step_deg=1.0, max_range_m=30.0)
 MOVE_M = 0.02  # it moves in steps so small
@@ -87,16 +88,22 @@ def _visit(room: Room, rng: np.random.Generator) -> Iterator[Target]:
 def walk(office: Office, options: WalkOptions, seed: int) -> tuple[Array, Array]:
     """Poses `[n, 3]` at which scans are taken, and their times [s]."""
     rng = stream(seed, "walk")
-    goals = targets(office, options, rng)
-    goal = next(goals)
+    return follow(targets(office, options, rng), options, rng)
+
+
+def follow(goals: Iterator[Target], options: WalkOptions, rng: np.random.Generator) -> tuple[Array, Array]:
+    """As `walk`, from goal to goal, until there is none left or there are as many scans as wanted."""
+    goal: Target | None = next(goals)
     x, y, heading = goal.x_m, goal.y_m, 0.0
     moved, turned, time, next_m = math.inf, 0.0, 0.0, 0.0
     turns_on_spot, limit = False, math.radians(options.turn_deg)
     poses: list[tuple[float, float, float]] = []
     times: list[float] = []
     while len(poses) < options.num_scans:
-        while math.hypot(goal.x_m - x, goal.y_m - y) < goal.reached_m:
-            goal = next(goals)
+        while goal is not None and math.hypot(goal.x_m - x, goal.y_m - y) < goal.reached_m:
+            goal = next(goals, None)
+        if goal is None:
+            break
         aside = math.remainder(math.atan2(goal.y_m - y, goal.x_m - x) - heading, 2.0 * math.pi)
         turns_on_spot = abs(aside) > (FACES_RAD if turns_on_spot else TURN_ON_SPOT_RAD)
         most = TURN_RAD if turns_on_spot else STEER_RAD_PER_M * MOVE_M
@@ -118,8 +125,13 @@ def simulate_walk(seed: int, options: WalkOptions, office: OfficeOptions | None 
     """The same options give the same arrays."""
     built = build_office(seed, office or OfficeOptions())
     poses, times_s = walk(built, options, seed)
-    angles = SICK.beam_angles_rad()
-    caster = PlanarCaster(built.world, SICK.height_m)
-    exact = caster.cast(poses, float(angles[0]), float(np.deg2rad(SICK.angle_step_deg)), SICK.num_beams)[:, None]
+    return scanned(seed, built.world, poses, times_s, SICK)
+
+
+def scanned(seed: int, world: World, poses: Array, times_s: Array, sensor: SensorOptions) -> Simulation:
+    """A level laser's readings from poses `[n, 3]`."""
+    angles = sensor.beam_angles_rad()
+    caster = PlanarCaster(world, sensor.height_m)
+    exact = caster.cast(poses, float(angles[0]), float(np.deg2rad(sensor.angle_step_deg)), sensor.num_beams)[:, None]
     drive = Drive(times_s, poses, poses[:, None], np.zeros((len(poses), 1, 2)), np.zeros(1))
-    return Simulation(SimulationOptions(seed, sensor=SICK), built.world, drive, measure(seed, exact, SICK))
+    return Simulation(SimulationOptions(seed, sensor=sensor), world, drive, measure(seed, exact, sensor))

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <set>
 
-#include "step_lengths.hpp"
-
 namespace shapemap {
 namespace {
 
@@ -19,6 +17,9 @@ constexpr double kPriorOfLinks = 2.0;
 
 /// The chain took its neighbours into account as well.
 constexpr double kAgainstChain = 3.0;
+
+/// Steps that are so many times longer than usual are all alike: pieces that nothing joins lie far apart.
+constexpr double kMostUnusual = 100.0;
 
 bool agrees(const Pose2& off) { return is_within(off, kAgrees_m, kAgrees_rad); }
 
@@ -47,8 +48,9 @@ LoopProblem::LoopProblem(const std::vector<std::shared_ptr<const ScanView>>& vie
       options_(options),
       evidence_(views, visibility, threads),
       num_nodes_(views.size()),
-      usual_step_m_(usual_step_m(links)) {
+      usual_(usual_motion(links)) {
   for (const LoopCluster& cluster : clusters) loop_constraints_.push_back(constraints_of(cluster));
+  rivals_ = loop_rivals(clusters);
 }
 
 LoopChoice LoopProblem::undecided(std::vector<Pose2> map_from_node) const {
@@ -121,22 +123,34 @@ double LoopProblem::worth(std::size_t cluster) const {
   return std::min(clusters_[cluster].strength, options_.trust_cap);
 }
 
-/// Of alternatives that are not the best, of links that are cut, and of unusual steps.
+double LoopProblem::worth_in(const LoopChoice& choice, std::size_t cluster) const {
+  double strongest = 0.0;
+  for (const LoopRival& rival : rivals_[cluster]) {
+    if (rival.strength <= strongest) continue;
+    if (!is_within(off(choice, rival.cluster), kContradicts_m, kContradicts_rad)) strongest = rival.strength;
+  }
+  return std::clamp(clusters_[cluster].strength - strongest, 0.0, options_.trust_cap);
+}
+
+/// Of alternatives that are not the best, of links that are cut, and of unusual steps and turns.
 double LoopProblem::cost_of_links(const LoopChoice& choice) const {
   double cost = 0.0;
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const ChainLink& link = links_[i];
     if (!link.exists() || link.probability >= options_.doubt_below) continue;
     if (choice.link_choice[i] == kCut) {
-      const double p = std::clamp(link.probability, 1e-3, 1.0 - 1e-6);
+      const double p = std::clamp(std::max(link.probability, link.any_probability), 1e-3, 1.0 - 1e-6);
       cost += std::max(0.0, std::log(p / (1.0 - p)) + kPriorOfLinks);
     } else {
       const auto taken = static_cast<std::size_t>(choice.link_choice[i]);
       cost += link.alternatives.front().score - link.alternatives[taken].score + (taken == 0 ? 0.0 : kAgainstChain);
     }
-    const double step_m = (choice.map_from_node[i].translation() - choice.map_from_node[i + 1].translation()).norm();
-    const double steps = std::min(step_m / usual_step_m_ - 1.0, 10.0);
-    cost += options_.step_penalty * std::max(0.0, steps);
+    const Pose2& from = choice.map_from_node[i];
+    const Pose2& to = choice.map_from_node[i + 1];
+    const double steps = (from.translation() - to.translation()).norm() / usual_.step_m;
+    const double turns = angle_between(from.theta_rad, to.theta_rad) / usual_.turn_rad;
+    for (const double times : {steps, turns})
+      cost += options_.step_penalty * std::clamp(times - 1.0, 0.0, kMostUnusual);
   }
   return cost;
 }
@@ -145,7 +159,7 @@ void LoopProblem::rate(LoopChoice& choice) {
   choice.value =
       MapEvidence::kWeight * evidence_.of(choice.map_from_node) - 0.5 * choice.chi_square - cost_of_links(choice);
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
-    if (choice.accepted[k]) choice.value += worth(k);
+    if (choice.accepted[k]) choice.value += worth_in(choice, k);
   }
 }
 

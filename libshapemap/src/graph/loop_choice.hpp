@@ -5,9 +5,11 @@
 #include <memory>
 #include <vector>
 
+#include "loop_rivals.hpp"
 #include "shapemap/graph/loop_closing.hpp"
 #include "shapemap/graph/map_evidence.hpp"
 #include "shapemap/graph/pose_graph.hpp"
+#include "usual_motion.hpp"
 
 namespace shapemap {
 
@@ -51,6 +53,8 @@ class LoopProblem {
   const PoseConstraint& best_member(std::size_t cluster) const { return loop_constraints_[cluster].front(); }
   /// What closing a loop is worth by itself.
   double worth(std::size_t cluster) const;
+  /// What it is worth in a map: less where the same nodes look like another place that they are not at in this map.
+  double worth_in(const LoopChoice& choice, std::size_t cluster) const;
 
   MapEvidence& evidence() { return evidence_; }
   std::size_t num_nodes() const { return num_nodes_; }
@@ -65,8 +69,9 @@ class LoopProblem {
   const LoopClosingOptions& options_;
   MapEvidence evidence_;
   std::size_t num_nodes_;
-  double usual_step_m_;
+  UsualMotion usual_;
   std::vector<std::vector<PoseConstraint>> loop_constraints_;
+  std::vector<std::vector<LoopRival>> rivals_;  ///< of each cluster
 };
 
 }  // namespace shapemap

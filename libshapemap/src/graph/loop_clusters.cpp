@@ -84,7 +84,7 @@ class Clustering {
     double by_a = 0.0;
     double by_b = 0.0;
     for (const LoopHypothesis& member : cluster.members) {
-      const double worth = std::clamp(member.log_odds + kOffset, 0.0, kMostPerNode);
+      const double worth = worth_of_member(member);
       if (of_a.insert(member.a).second) by_a += worth;
       if (of_b.insert(member.b).second) by_b += worth;
     }
@@ -102,6 +102,10 @@ class Clustering {
 };
 
 }  // namespace
+
+double worth_of_member(const LoopHypothesis& member) {
+  return std::clamp(member.log_odds + kOffset, 0.0, kMostPerNode);
+}
 
 std::vector<LoopCluster> loop_clusters(const std::vector<LoopHypothesis>& hypotheses,
                                        const std::vector<Pose2>& map_from_node,

@@ -17,6 +17,9 @@ namespace {
 constexpr std::size_t kPosesPerPair = 3;
 constexpr std::size_t kBridgePoses = 5;
 
+/// An alignment that is held worse than this does not tell where the place is: along a bare corridor, any will do.
+constexpr double kHeld_m = 0.2;
+
 /// Nodes on either side of a bridge.
 constexpr std::size_t kBridgeNodes = 4;
 
@@ -51,6 +54,12 @@ struct PairSearch {
   double least_probability;
 };
 
+/// That the two scans are of one place, and that it is where the alignment says.
+double log_odds_of_place(double probability, const Eigen::Matrix3d& covariance) {
+  const double p = std::clamp(probability, 1e-9, 1.0 - 1e-9);
+  return std::log(p / (1.0 - p)) - std::log(std::max(1.0, worst_deviation_m(covariance) / kHeld_m));
+}
+
 std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, const PairSearch& search,
                                     AlignmentStore* store) {
   const std::vector<PoseHypothesis> poses =
@@ -58,9 +67,10 @@ std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, co
   std::vector<LoopHypothesis> found;
   for (std::size_t k = 0; k < std::min(search.most_poses, poses.size()); ++k) {
     const double margin = k == 0 ? lead_of_first(poses) : poses[k].score - poses[0].score;
-    const double p = std::clamp(match_probability(poses[k], margin), 1e-9, 1.0 - 1e-9);
-    if (p < search.least_probability) continue;
-    found.push_back({pair.a, pair.b, poses[k].ref_from_query, pose_covariance(poses[k].fit), std::log(p / (1.0 - p))});
+    const double probability = match_probability(poses[k], margin);
+    if (probability < search.least_probability) continue;
+    const Eigen::Matrix3d covariance = pose_covariance(poses[k].fit);
+    found.push_back({pair.a, pair.b, poses[k].ref_from_query, covariance, log_odds_of_place(probability, covariance)});
   }
   return found;
 }

@@ -11,7 +11,7 @@
 
 #include "piece_joints.hpp"
 #include "shapemap/graph/pose_graph.hpp"
-#include "step_lengths.hpp"
+#include "usual_motion.hpp"
 
 namespace shapemap {
 namespace {
@@ -60,7 +60,7 @@ class Assembly {
         chain_(map_of_chain),
         pose_(std::move(map_of_chain)),
         evidence_(evidence),
-        usual_step_m_(usual_step_m(links)),
+        usual_step_m_(usual_motion(links).step_m),
         piece_(pose_.size(), 0),
         log_(pose_.size(), 0) {
     for (std::size_t i = 0; i < links.size(); ++i) {

@@ -13,6 +13,10 @@ namespace {
 constexpr double kWithin_m = 6.0;
 constexpr std::size_t kLeastApart = 2;   // along the chain
 constexpr std::size_t kSameStretch = 8;  // all pairs of nodes this near along the chain are asked, else one in four
+/// What a node can gain by all nodes of other stretches: the tenth that looks at the same wall tells nothing new. Where
+/// many places are laid on each other, pairs that happen to go together would be without number.
+constexpr double kMostByOthers = 1.0;
+
 constexpr std::size_t kStride = 3;
 constexpr double kSlack = 2.0;
 constexpr std::size_t kPairsBetween = 60;  // of two pieces, about so many tell enough
@@ -60,10 +64,10 @@ double MapEvidence::between(const std::vector<Pose2>& pose_in_piece, const std::
   std::vector<RelativePose> some;
   for (std::size_t i = 0; i < pairs.size(); i += stride) some.push_back(pairs[i]);
   if (some.empty()) return 0.0;
-  return of_pairs(some) * static_cast<double>(pairs.size()) / static_cast<double>(some.size());
+  return of_pairs(some, static_cast<double>(pairs.size()) / static_cast<double>(some.size()));
 }
 
-double MapEvidence::of_pairs(const std::vector<RelativePose>& pairs) {
+double MapEvidence::of_pairs(const std::vector<RelativePose>& pairs, double each_stands_for) {
   std::vector<Known*> known;
   known.reserve(pairs.size());
   std::vector<std::size_t> stale;
@@ -78,7 +82,17 @@ double MapEvidence::of_pairs(const std::vector<RelativePose>& pairs) {
     *known[stale[k]] = {pair.a_from_b, of_pair(seen)};
   });
   double sum = 0.0;
-  for (const Known* pair : known) sum += pair->value;
+  std::map<std::size_t, double> by_others;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const double value = known[i]->value * each_stands_for;
+    if (value < 0.0 || pairs[i].b - pairs[i].a < kSameStretch) {
+      sum += value;
+    } else {
+      by_others[pairs[i].a] += 0.5 * value;
+      by_others[pairs[i].b] += 0.5 * value;
+    }
+  }
+  for (const auto& [unused, gain] : by_others) sum += kMostByOthers * (1.0 - std::exp(-gain / kMostByOthers));
   return sum;
 }
 

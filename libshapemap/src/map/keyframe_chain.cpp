@@ -11,8 +11,9 @@ namespace {
 std::size_t num_choices(const KeyframeLink& link) { return std::max<std::size_t>(link.hypotheses.size(), 1); }
 
 /// Both what the scans tell and that the sensor cannot jump: along a bare corridor, only that.
-Eigen::Matrix3d with_usual_motion(const Eigen::Matrix3d& covariance) {
-  const Eigen::Vector3d usual(kUsualSurprise_m, kUsualSurprise_m, kUsualSurprise_rad);
+Eigen::Matrix3d with_usual_motion(const Eigen::Matrix3d& covariance, bool is_expected) {
+  const double usual_m = is_expected ? kUsualSurprise_m : kUsualSlip_m;
+  const Eigen::Vector3d usual(usual_m, usual_m, is_expected ? kUsualSurprise_rad : kUsualSlip_rad);
   const Eigen::Matrix3d motion = usual.cwiseAbs2().asDiagonal();
   const Eigen::Matrix3d both = motion * (motion + covariance).inverse() * covariance;
   return 0.5 * (both + both.transpose());
@@ -25,8 +26,7 @@ PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std
   const PoseHypothesis& pose = of.hypotheses[k];
   if (of.settled_covariance) return {link, link + 1, pose.ref_from_query, *of.settled_covariance, 0.0};
   const bool is_expected = chain.keyframes[link + 1].expected.has_value();
-  const Eigen::Matrix3d covariance = pose_covariance(pose.fit);
-  return {link, link + 1, pose.ref_from_query, is_expected ? with_usual_motion(covariance) : covariance, 0.0};
+  return {link, link + 1, pose.ref_from_query, with_usual_motion(pose_covariance(pose.fit), is_expected), 0.0};
 }
 
 double link_probability(const KeyframeLink& link, const ConfidenceOptions& options) {

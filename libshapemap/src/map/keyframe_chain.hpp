@@ -17,6 +17,10 @@ namespace shapemap {
 inline constexpr double kUsualSurprise_m = 0.4;
 inline constexpr double kUsualSurprise_rad = 25 * kDegree;
 
+/// Where nothing is expected, a step is what the scans say, give or take this much.
+inline constexpr double kUsualSlip_m = 0.5;
+inline constexpr double kUsualSlip_rad = 180 * kDegree;
+
 /// A scan that others are aligned to.
 struct Keyframe {
   std::size_t position_index = 0;
@@ -48,8 +52,9 @@ struct KeyframeChain {
   std::vector<KeyframeLink> links;  ///< links[i] joins keyframe i to keyframe i + 1
 };
 
-/// What hypothesis number `k` of a link says. Where scans follow each other closely it is held at least as well as a
-/// motion is usually known before, whichever hypothesis: none must be taken for being held less.
+/// What hypothesis number `k` of a link says. It is held at least as well as a motion is usually known before, best
+/// where scans follow each other closely, whichever hypothesis: none must be taken for being held less, and a corridor
+/// must not shrink because its scans slide.
 PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std::size_t k);
 
 /// Of the hypothesis that the chain chose.

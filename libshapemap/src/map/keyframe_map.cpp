@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "loop_knowledge.hpp"
+#include "shapemap/graph/look_alikes.hpp"
 #include "shapemap/graph/loop_closing.hpp"
 #include "shapemap/graph/map_refinement.hpp"
 
@@ -101,12 +102,13 @@ KeyframeMap map_of_chain(const KeyframeChain& chain, const MappingOptions& optio
   return map;
 }
 
-KeyframeMap map_with_loops(const KeyframeChain& chain, const std::vector<LoopHypothesis>& hypotheses,
+KeyframeMap map_with_loops(const KeyframeChain& chain, const std::vector<LoopHypothesis>& found,
                            const MappingOptions& options, RunObserver& observer) {
   observer.on_stage("whole map");
   KeyframeMap map = map_of_chain(chain, options);
   const NodeViews views = views_of(chain);
   const std::vector<ChainLink> links = chain_links(chain, options.robust.confidence);
+  const std::vector<LoopHypothesis> hypotheses = without_look_alikes(found, links, map.map_from_keyframe);
   const std::vector<LoopCluster> clusters = loop_clusters(hypotheses, map.map_from_keyframe, trusted_pieces(links), {});
   const VisibilityOptions& visibility = options.robust.search.visibility;
   const LoopSolution solution = close_loops(views, links, hypotheses, clusters, visibility, options.loop_closing,

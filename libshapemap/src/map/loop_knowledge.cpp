@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "keyframe_store.hpp"
+#include "shapemap/align/confidence.hpp"
 #include "shapemap/core/errors.hpp"
 
 namespace shapemap {
@@ -19,6 +20,9 @@ ChainLink chain_link(const KeyframeChain& chain, std::size_t i, const Confidence
     result.alternatives.push_back({constraint.a_from_b, constraint.covariance, link.hypotheses[k].score});
   }
   if (result.exists()) result.probability = link_probability(link, options);
+  for (const PoseHypothesis& pose : link.hypotheses) {
+    result.any_probability = std::max(result.any_probability, match_probability(pose, kFullMargin));
+  }
   return result;
 }
 

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "support/matchers.hpp"
 #include "support/ring_walk.hpp"
 
@@ -78,6 +80,52 @@ TEST(LoopChoiceOfMap, OfAnotherLogIsNotJoined) {
   EXPECT_EQ(choice.link_choice, chain.link_choice);
   EXPECT_EQ(choice.link_choice[20], kCut);
   EXPECT_THAT(choice.accepted, Each(0));
+}
+
+/// That the same nodes look like another place as well counts against a loop, unless the map has them there, too.
+TEST(LoopChoiceWorth, IsLessByARivalThatTheMapContradicts) {
+  Ring ring;
+  ring.clusters = {test::cluster_of(ring.truth, 0, kRingLap, 4, 18.0),
+                   test::cluster_of(ring.truth, 20, kRingLap, 4, 11.0, {4.0, 0.0, 0.0}),
+                   test::cluster_of(ring.truth, 4, kRingLap + 4, 4, 30.0)};
+  LoopProblem problem = ring.problem();
+  const LoopChoice choice = problem.of_map(ring.truth);
+  EXPECT_NEAR(problem.worth_in(choice, 0), 7.0, 1e-9);
+  EXPECT_NEAR(problem.worth_in(choice, 2), 20.0, 1e-9) << "shares no node, and at most the cap";
+  ring.clusters[1] = test::cluster_of(ring.truth, 1, kRingLap, 4, 11.0, {});
+  LoopProblem agreeing = ring.problem();
+  EXPECT_NEAR(agreeing.worth_in(agreeing.of_map(ring.truth), 0), 18.0, 1e-9);
+}
+
+/// A link of which one alternative fits well is not cut lightly, though it is not sure which.
+TEST(LoopChoiceValue, OfACutLinkIsLessTheBetterOneOfItsAlternativesFits) {
+  Ring ring;
+  ring.spoil(20, false);
+  const double poor = ring.problem().of_map(ring.truth).value;
+  ring.links[20].any_probability = 0.999;
+  const LoopChoice well = ring.problem().of_map(ring.truth);
+  EXPECT_EQ(well.link_choice[20], kCut);
+  EXPECT_NEAR(poor - well.value, std::log(999.0) + 2.0 - (std::log(0.4 / 0.6) + 2.0), 1e-6);
+}
+
+TEST(LoopChoiceValue, IsLessByUnusualTurns) {
+  Ring free;
+  free.options.step_penalty = 0.0;
+  Ring costly;
+  costly.options.step_penalty = 8.0;
+  free.links[20].probability = costly.links[20].probability = 0.9;
+  LoopProblem without = free.problem();
+  LoopProblem with = costly.problem();
+  const auto penalty = [&](LoopChoice choice) {
+    LoopChoice same = choice;
+    without.rate(choice);
+    with.rate(same);
+    return choice.value - same.value;
+  };
+  LoopChoice map = without.of_map(free.truth);
+  EXPECT_NEAR(penalty(map), 0.0, 1e-9);
+  map.map_from_node[21].theta_rad += 180 * kDegree;
+  EXPECT_GT(penalty(map), 4.0);
 }
 
 /// Without loops that agree, the chain is what it was.

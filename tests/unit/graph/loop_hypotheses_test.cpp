@@ -4,11 +4,12 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/LU>
-
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "shapemap/align/confidence.hpp"
 #include "shapemap/core/errors.hpp"
 #include "support/matchers.hpp"
 #include "support/ring_walk.hpp"
@@ -72,7 +73,8 @@ TEST(LikelyLoops, FindsThePlacesThatWereSeenBefore) {
   for (const LoopHypothesis& loop : found) {
     ASSERT_LE(loop.a + 30, loop.b) << "too short a loop";
     ASSERT_LT(loop.b, ring().views.size());
-    EXPECT_GE(1.0 / (1.0 + std::exp(-loop.log_odds)), options.least_probability - 1e-9);
+    const double of_slipping = std::log(std::max(1.0, worst_deviation_m(loop.covariance) / 0.2));
+    EXPECT_GE(1.0 / (1.0 + std::exp(-loop.log_odds - of_slipping)), options.least_probability - 1e-9);
     EXPECT_GT(loop.covariance.determinant(), 0.0);
     places[loop.b].insert(loop.a);
     const Pose2 a_from_b = inverse(ring().truth[loop.a]) * ring().truth[loop.b];

@@ -24,8 +24,10 @@ double deviation_m(const KeyframeChain& chain) { return std::sqrt(link_constrain
 
 TEST(LinkConstraint, IsHeldByTheUsualMotionWhereTheScansSayLittle) {
   KeyframeChain chain = sliding_link();
-  const Eigen::Matrix3d by_scans = link_constraint(chain, 0, 0).covariance;
-  EXPECT_GT(deviation_m(chain), 2.0);
+  const Eigen::Matrix3d by_scans = pose_covariance(chain.links[0].hypotheses[0].fit);
+  EXPECT_GT(std::sqrt(by_scans(0, 0)), 5.0);
+  EXPECT_NEAR(deviation_m(chain), kUsualSlip_m, 0.01) << "nothing is expected";
+  EXPECT_NEAR(link_constraint(chain, 0, 0).covariance(1, 1), by_scans(1, 1), 0.02 * by_scans(1, 1));
   const Pose2 pose = chain.links[0].hypotheses[0].ref_from_query;
   chain.keyframes[1].expected = pose * Pose2{0.1, 0.0, 2 * kDegree};
   const Eigen::Matrix3d by_both = link_constraint(chain, 0, 0).covariance;

@@ -23,6 +23,7 @@ struct ChainLink {
   };
   std::vector<Alternative> alternatives;  ///< the best first; none: the two nodes belong to different pieces
   double probability = 0.0;               ///< that the first alternative is right
+  double any_probability = 0.0;           ///< that one of them is, by how well the best fits; at least `probability`
 
   bool exists() const { return !alternatives.empty(); }
 };
@@ -50,7 +51,7 @@ struct LoopClosingOptions {
     visit(Field{"loop-repairs", "contradictions that are looked into, in each round", 0, 1000}, self.repairs);
     visit(Field{"loop-trust-cap", "what a loop can weigh at most, as logarithm of odds", 0, 1000}, self.trust_cap);
     visit(Field{"loop-least-gain", "what a change must gain, as logarithm of odds", 0, 1000}, self.least_gain);
-    visit(Field{"step-penalty", "against each length of a usual step that a doubtful one is longer", 0, 100},
+    visit(Field{"step-penalty", "against each usual step or turn that a doubtful one is longer", 0, 100},
           self.step_penalty);
   }
 };

@@ -16,8 +16,11 @@ struct LoopHypothesis {
   std::size_t b = 0;  ///< the later one
   Pose2 a_from_b;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-  double log_odds = 0.0;  ///< that it is right, by the two scans alone
+  double log_odds = 0.0;  ///< that it is right, by the two scans alone; less where they do not hold it
 };
+
+/// What a hypothesis counts for in a cluster, as logarithm of odds; never negative.
+double worth_of_member(const LoopHypothesis& member);
 
 /// Hypotheses that say the same: several scans of one stretch of the way lie so about several of another.
 struct LoopCluster {

@@ -14,7 +14,8 @@ namespace shapemap {
 
 /// How well scans that the chain does not join go together at the poses of a map: what one of them saw, the other must
 /// not have looked through. A place that is mapped twice, or two places on top of each other, tell against a map;
-/// a loop that is closed well tells for it. Logarithm of odds, 0 for a map in which no two stretches meet.
+/// a loop that is closed well tells for it, though not the more, the more often the place is passed. Logarithm of odds,
+/// 0 for a map in which no two stretches meet.
 class MapEvidence {
  public:
   MapEvidence(std::vector<std::shared_ptr<const ScanView>> views, VisibilityOptions options, int threads)
@@ -45,7 +46,7 @@ class MapEvidence {
     std::size_t b;  ///< the later one
     Pose2 a_from_b;
   };
-  double of_pairs(const std::vector<RelativePose>& pairs);
+  double of_pairs(const std::vector<RelativePose>& pairs, double each_stands_for = 1.0);
 
   std::vector<std::shared_ptr<const ScanView>> views_;
   VisibilityOptions options_;
