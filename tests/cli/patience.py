@@ -3,7 +3,12 @@
 
 import os
 
+import pytest
+
 SLOWDOWN = float(os.environ.get("SHAPEMAP_SLOWDOWN", "1"))
+
+# What is long, and asks what comes out rather than of new code: other tests run the same code with sanitizers.
+without_sanitizers = pytest.mark.skipif(SLOWDOWN > 1, reason="takes too long with sanitizers")
 
 
 def wait(process, limit_s=30):

@@ -9,6 +9,7 @@ import os
 import pathlib
 import subprocess
 
+import patience
 import pytest
 from mapping_checks import (
     check_map,
@@ -181,6 +182,7 @@ def test_the_report_gives_a_reason_for_each_position_without_a_place(mapped):
 
 # Right pairs of 59. Measured: all by the robust method; by the paper's intel 52, orebro 45, belgioioso 59, and
 # without ICP 36, 39, 53.
+@patience.without_sanitizers
 @pytest.mark.parametrize(
     ("method", "name", "min_right"),
     [

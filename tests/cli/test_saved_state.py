@@ -7,6 +7,7 @@ import signal
 import subprocess
 import time
 
+import patience
 import pytest
 import synthetic_log
 
@@ -114,6 +115,7 @@ def test_killed_and_resumed_is_as_never_killed(cli_path, run, command, bytes_of,
     assert bytes_of("out") == never_cut
 
 
+@patience.without_sanitizers
 def test_killed_again_and_again(cli_path, run, command, bytes_of, saved, never_cut, tmp_path):
     num_killed = 0
     arguments = command("out", *STATE)
@@ -158,6 +160,7 @@ def cut_points(state):
     }  # fmt: skip
 
 
+@patience.without_sanitizers
 def test_cut_off_anywhere_is_resumed(run, command, bytes_of, saved, never_cut, tmp_path):
     for name, size in cut_points(saved).items():
         (tmp_path / "run.state").write_bytes(saved[:size])
