@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import os
 import sys
 import tempfile
@@ -20,7 +19,7 @@ from shapemap_sim.poses import Array
 from shapemap_sim.read import read_tum
 from shapemap_sim.simulation import Simulation, simulate
 from shapemap_sim.whole_maps import WholeMap, fragment_errors, judge, lost_map, mean_of_sub_scans, not_right, summary
-from shapemap_sim.write import nist_text, write_whole
+from shapemap_sim.write import nist_text, without_nan, write_whole
 from simulate_arena import add_arena_arguments, number, options_from
 
 EXAMPLE = """example:
@@ -75,9 +74,7 @@ def run_seed(seed: int, arguments: argparse.Namespace) -> WholeMap:
 
 
 def map_dict(one: WholeMap) -> dict[str, Any]:
-    """Errors of nothing become null: JSON has no NaN."""
-    fields = {**asdict(one), "verdict": one.verdict}
-    return {key: None if isinstance(value, float) and math.isnan(value) else value for key, value in fields.items()}
+    return without_nan({**asdict(one), "verdict": one.verdict})
 
 
 def as_json(maps: list[WholeMap], arguments: argparse.Namespace) -> str:

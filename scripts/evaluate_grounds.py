@@ -23,7 +23,7 @@ from evaluation.programs import Failure
 from evaluation.selection import add_mapper_arguments, mapper_from
 from pair_evaluation.reference_log import strip_nist
 from shapemap_sim.grounds import GROUNDS, simulate_ground
-from shapemap_sim.write import nist_text, tum_text, write_whole
+from shapemap_sim.write import nist_text, tum_text, without_nan, write_whole
 from simulate_arena import number, some_of
 
 EXAMPLE = """A scan of 180 degrees each metre, without odometry. A pair of consecutive scans is right within 0.20 m and
@@ -129,11 +129,8 @@ def main(argv: list[str] | None = None) -> int:
         outcomes = [future.result() for future in futures]
     print(table(outcomes))
     if arguments.json:
-        rows = [
-            {key: None if isinstance(value, float) and math.isnan(value) else value for key, value in row.items()}
-            for row in map(asdict, outcomes)
-        ]
-        write_whole(arguments.json, json.dumps({"arguments": arguments.arg, "runs": rows}, indent=1) + "\n")
+        content = {"arguments": arguments.arg, "runs": [without_nan(asdict(one)) for one in outcomes]}
+        write_whole(arguments.json, json.dumps(content, indent=1) + "\n")
     return 1 if any(one.fault for one in outcomes) else 0
 
 

@@ -35,7 +35,7 @@ from evaluation.selection import add_mapper_arguments, mapper_from
 from pair_evaluation.reference_log import strip_nist
 from shapemap_sim.long_walk import WalkOptions, simulate_walk
 from shapemap_sim.simulation import Simulation
-from shapemap_sim.write import nist_text, tum_text, write_whole
+from shapemap_sim.write import nist_text, tum_text, without_nan, write_whole
 from simulate_arena import number
 
 EXAMPLE = """The office is 40 x 25 m, with rooms on both sides of a corridor all around; each lap is somewhat different,
@@ -125,11 +125,7 @@ def measured(simulation: Simulation, mapper: Mapper) -> Growth:
 
 
 def write_json(path: Path, runs: list[Growth], options: WalkOptions, arguments: argparse.Namespace) -> None:
-    """Errors of nothing become null: JSON has no NaN."""
-    rows = [
-        {key: None if isinstance(value, float) and math.isnan(value) else value for key, value in asdict(run).items()}
-        for run in runs
-    ]
+    rows = [without_nan(asdict(run)) for run in runs]
     content = {"walk": asdict(options), "seed": arguments.seed, "arguments": arguments.arg, "runs": rows}
     write_whole(path, json.dumps(content, indent=1) + "\n")
 

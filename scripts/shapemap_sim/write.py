@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -22,6 +24,11 @@ def write_whole(path: Path, text: str) -> None:
     partial = path.with_name(f".{path.name}.{os.getpid()}.part")
     partial.write_text(text, encoding="utf-8")
     partial.replace(path)
+
+
+def without_nan(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """Numbers of nothing become null: JSON has no NaN."""
+    return {key: None if isinstance(value, float) and np.isnan(value) else value for key, value in fields.items()}
 
 
 def range_text(range_m: float) -> str:

@@ -149,8 +149,9 @@ double LoopProblem::cost_of_links(const LoopChoice& choice) const {
     const Pose2& to = choice.map_from_node[i + 1];
     const double steps = (from.translation() - to.translation()).norm() / usual_.step_m;
     const double turns = angle_between(from.theta_rad, to.theta_rad) / usual_.turn_rad;
-    for (const double times : {steps, turns})
+    for (const double times : {steps, turns}) {
       cost += options_.step_penalty * std::clamp(times - 1.0, 0.0, kMostUnusual);
+    }
   }
   return cost;
 }

@@ -23,7 +23,7 @@ struct ChainLink {
   };
   std::vector<Alternative> alternatives;  ///< the best first; none: the two nodes belong to different pieces
   double probability = 0.0;               ///< that the first alternative is right
-  double any_probability = 0.0;           ///< that one of them is, by how well the best fits; at least `probability`
+  double any_probability = 0.0;           ///< that one of them is, by how well the best fits
 
   bool exists() const { return !alternatives.empty(); }
 };
