@@ -51,6 +51,8 @@ class CorridorOptions:
 
 @dataclass(frozen=True)
 class HallOptions:
+    """The way makes up to `turns` turns between partitions and showcases, of which those in its way are left out."""
+
     size_m: tuple[float, float] = (46.0, 30.0)
     partitions: int = 22
     showcases: int = 40
@@ -145,15 +147,11 @@ def _put_up(
             centre = rng.uniform([0.0, 0.0], world.size_m)
             faces, arcs = make(centre, rng.uniform(-np.pi, np.pi), rng)
             points = outline_points(faces, arcs)
-            if not leaves_free(points, world.route, clearance_m, world.size_m) or not stands_apart(
-                points, outlines, 0.5
-            ):
-                continue
-            if _is_inside(centre, world):
-                continue
-            world.faces += faces
-            world.arcs += arcs
-            break
+            is_free = leaves_free(points, world.route, clearance_m, world.size_m)
+            if is_free and stands_apart(points, outlines, 0.5) and not _is_inside(centre, world):
+                world.faces += faces
+                world.arcs += arcs
+                break
 
 
 def _is_inside(point: Array, world: World) -> bool:
@@ -187,6 +185,7 @@ def long_corridor(seed: int, options: CorridorOptions) -> World:
 def _wall_with_doors(
     world: World, y: float, out: float, sides: Array, options: CorridorOptions, rng: np.random.Generator
 ) -> None:
+    """Along x at `y`; doors and rooms open towards `out`, wide corridors at `sides`."""
     at = 0.0
     while at < options.length_m:
         piece = min(options.door_every_m * rng.uniform(0.5, 1.5), options.length_m - at)
@@ -204,7 +203,7 @@ def _wall_with_doors(
             add_wall(world, start, end)
         if far > at + opening:
             add_wall(world, (at + opening, y), (far, y))
-        at = far if not is_open else max(at + opening, far)
+        at = far
 
 
 def exhibition(seed: int, options: HallOptions) -> World:
