@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Large places of other kinds than offices and arenas: streets between buildings, a long corridor, an exhibition."""
+"""Large places of other kinds than offices and arenas: streets between buildings, corridors, an exhibition."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .buildings import FURNITURE, add_outline, add_wall
+from .buildings import add_outline
 from .clutter import Objects, leaves_free, make_box, make_odd_wall, make_tubes, outline_points, scatter, stands_apart
+from .corridors import CorridorOptions, CorridorsOptions, corridors, long_corridor, route_of_crossings
 from .long_walk import WalkOptions, follow, scanned, target
 from .poses import Array, rotate
 from .sensor import SensorOptions
@@ -36,20 +37,6 @@ class StreetOptions:
 
 
 @dataclass(frozen=True)
-class CorridorOptions:
-    """Closed doors lie `recess_m` behind the walls, one every `door_every_m` or so; `open_share` of them are open."""
-
-    length_m: float = 150.0
-    width_m: float = 2.6
-    door_every_m: float = 4.5
-    recess_m: tuple[float, float] = (0.06, 0.2)
-    open_share: float = 0.12
-    room_m: float = 4.0
-    side_corridors: int = 3
-    objects: int = 25
-
-
-@dataclass(frozen=True)
 class HallOptions:
     """The way makes up to `turns` turns between partitions and showcases, of which those in its way are left out."""
 
@@ -70,7 +57,7 @@ def streets(seed: int, options: StreetOptions) -> World:
             low = np.array([column, row]) * pitch + street
             world.faces += polygon_faces(_building(low, np.array(options.building_m), rng), HIGH_M, "building")
     _far_sides(world, rng)
-    world.route = _from_crossing_to_crossing(options, pitch, rng)
+    world.route = route_of_crossings(options.blocks, pitch, 0.5 * street, options.crossings, 2.0, rng)
     _put_up(options.trees, world, _tree, 1.0, rng)
     _put_up(options.cars, world, _car, 1.2, rng)
     return world
@@ -105,23 +92,6 @@ def _far_sides(world: World, rng: np.random.Generator) -> None:
             a, b = (start + min(m, length) / length * along + outward for m in (at, at + piece))
             world.faces.append(Face((a[0], a[1]), (b[0], b[1]), 0.0, HIGH_M, 0.0, "fence"))
             at += piece + gap
-
-
-def _from_crossing_to_crossing(options: StreetOptions, pitch: Array, rng: np.random.Generator) -> Array:
-    """Seldom back at once, and rather where it has not been."""
-    half = 0.5 * options.street_m
-    at, before = (0, 0), (-1, -1)
-    visits: dict[frozenset[tuple[int, int]], int] = {}
-    route = [np.array([half, half])]
-    for _ in range(options.crossings):
-        ways = [(at[0] + dx, at[1] + dy) for dx, dy in ((1, 0), (0, 1), (-1, 0), (0, -1))]
-        ways = [w for w in ways if 0 <= w[0] <= options.blocks[0] and 0 <= w[1] <= options.blocks[1] and w != before]
-        cost = [visits.get(frozenset((at, way)), 0) + rng.uniform(0.0, 0.9) for way in ways]
-        way = ways[int(np.argmin(cost))]
-        visits[frozenset((at, way))] = visits.get(frozenset((at, way)), 0) + 1
-        at, before = way, at
-        route.append(np.array(at) * pitch + half + rng.uniform(-2.0, 2.0, 2))
-    return np.array(route)
 
 
 def _tree(centre: Array, angle_rad: float, rng: np.random.Generator) -> Objects:
@@ -165,47 +135,6 @@ def _is_inside(point: Array, world: World) -> bool:
     return crossed % 2 == 1
 
 
-def long_corridor(seed: int, options: CorridorOptions) -> World:
-    """Walls with doors, most of them closed, and a few corridors aside; there and back again."""
-    rng = stream(seed, "long corridor")
-    length, width, room = options.length_m, options.width_m, options.room_m
-    world = World((length, 2.0 * room + width))
-    sides = np.sort(rng.uniform(0.1, 0.9, options.side_corridors)) * length
-    for k, (y, out) in enumerate(((room, -1.0), (room + width, 1.0))):
-        _wall_with_doors(world, y, out, sides[k::2], options, rng)
-    for x in (0.0, length):
-        add_wall(world, (x, room), (x, room + width))
-    middle = room + 0.5 * width
-    there = np.array([(1.0, middle), (0.35 * length, middle), (0.7 * length, middle), (length - 1.0, middle)])
-    world.route = np.concatenate([there, there[::-1][1:]])
-    scatter(options.objects, world, 0.7, rng, makers=FURNITURE)
-    return world
-
-
-def _wall_with_doors(
-    world: World, y: float, out: float, sides: Array, options: CorridorOptions, rng: np.random.Generator
-) -> None:
-    """Along x at `y`; doors and rooms open towards `out`, wide corridors at `sides`."""
-    at = 0.0
-    while at < options.length_m:
-        piece = min(options.door_every_m * rng.uniform(0.5, 1.5), options.length_m - at)
-        aside = sides[(sides > at) & (sides < at + piece + 2.0)]
-        opening = float(rng.uniform(1.8, 2.4)) if len(aside) else 0.95
-        add_wall(world, (at, y), (at + piece, y))
-        at += piece
-        if at + opening >= options.length_m:
-            add_wall(world, (at, y), (options.length_m, y))
-            return
-        is_open = len(aside) > 0 or rng.random() < options.open_share
-        deep = out * (options.room_m if is_open else float(rng.uniform(*options.recess_m)))
-        far = at + opening + (rng.uniform(0.0, 2.5) if is_open and not len(aside) else 0.0)
-        for start, end in (((at, y), (at, y + deep)), ((at, y + deep), (far, y + deep)), ((far, y + deep), (far, y))):
-            add_wall(world, start, end)
-        if far > at + opening:
-            add_wall(world, (at + opening, y), (far, y))
-        at = far
-
-
 def exhibition(seed: int, options: HallOptions) -> World:
     """One hall with partitions at any angle, showcases and pillars; the way wanders through it."""
     rng = stream(seed, "exhibition")
@@ -234,6 +163,7 @@ def _partition(centre: Array, angle_rad: float, rng: np.random.Generator) -> Obj
 
 GROUNDS: dict[str, Callable[[int], World]] = {
     "streets": lambda seed: streets(seed, StreetOptions()),
+    "corridors": lambda seed: corridors(seed, CorridorsOptions()),
     "long-corridor": lambda seed: long_corridor(seed, CorridorOptions()),
     "exhibition": lambda seed: exhibition(seed, HallOptions()),
 }
