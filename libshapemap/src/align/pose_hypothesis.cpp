@@ -20,6 +20,9 @@ constexpr std::size_t kCoarseStride = 2;
 
 constexpr double kScorePerResidual_m = 56.0;
 
+/// Where the usual is looked for, so many times as many poses are put up and refined.
+constexpr int kMoreUsual = 2;
+
 bool better(const PoseHypothesis& a, const PoseHypothesis& b) { return a.score > b.score; }
 
 bool same_place(const Pose2& a, const Pose2& b) {
@@ -40,10 +43,12 @@ PoseHypothesis judged_fit(const ScanView& reference, const ScanView& query, cons
 /// The two scans of an alignment and what their hypotheses come from.
 class Search {
  public:
-  Search(const ScanView& reference, const ScanView& query, const HypothesisSearchOptions& options)
+  Search(const ScanView& reference, const ScanView& query, const HypothesisSearchOptions& options,
+         const MotionHabit& habit)
       : reference_(reference),
         query_(query),
         options_(options),
+        habit_(habit),
         max_shift_m_(max_shift_m(reference, query, options.voting)),
         voting_(reference, max_shift_m_, options.voting),
         shapes_(reference, query) {}
@@ -68,6 +73,7 @@ class Search {
     fine.reserve(coarse.size());
     for (const PoseHypothesis& pose : coarse) {
       fine.push_back(refined_hypothesis(reference_, query_, pose.ref_from_query, options_));
+      fine.back().score -= habit_.surprise(fine.back().ref_from_query);
     }
     return best_distinct(std::move(fine), options_.hypotheses.kept);
   }
@@ -78,12 +84,14 @@ class Search {
     pose.ref_from_query = {shift_m.x(), shift_m.y(), rotation_rad};
     pose.score = visibility_score(
         visibility(reference_, query_, pose.ref_from_query, options_.visibility, kCoarseSlack, kCoarseStride));
+    pose.score -= habit_.surprise(pose.ref_from_query);
     return pose;
   }
 
   const ScanView& reference_;
   const ScanView& query_;
   const HypothesisSearchOptions& options_;
+  const MotionHabit& habit_;
   double max_shift_m_;
   TranslationVoting voting_;
   ShapeHypotheses shapes_;
@@ -101,7 +109,8 @@ std::vector<double> all_rotations(double step_rad) {
 
 std::vector<PoseHypothesis> pose_hypotheses(const ScanView& reference, const ScanView& query,
                                             const HypothesisSearchOptions& options) {
-  const Search search(reference, query, options);
+  const MotionHabit any;
+  const Search search(reference, query, options, any);
   std::vector<PoseHypothesis> found =
       search.among(rotation_hypotheses(reference.tangents, query.tangents, options.hypotheses.rotation_peaks),
                    options.voting.peaks, options.hypotheses.shape_segments);
@@ -111,6 +120,17 @@ std::vector<PoseHypothesis> pose_hypotheses(const ScanView& reference, const Sca
       search.among(all_rotations(options.hypotheses.all_rotations_step_rad), std::max(1, options.voting.peaks / 4), 0);
   more.insert(more.end(), found.begin(), found.end());
   return best_distinct(std::move(more), options.hypotheses.kept);
+}
+
+std::vector<PoseHypothesis> usual_hypotheses(const ScanView& reference, const ScanView& query,
+                                             const HypothesisSearchOptions& options, const MotionHabit& habit) {
+  HypothesisSearchOptions thorough = options;
+  for (int* effort : {&thorough.hypotheses.rotation_peaks, &thorough.hypotheses.refined, &thorough.voting.peaks}) {
+    *effort *= kMoreUsual;
+  }
+  const Search search(reference, query, thorough, habit);
+  return search.among(rotation_hypotheses(reference.tangents, query.tangents, thorough.hypotheses.rotation_peaks),
+                      thorough.voting.peaks, thorough.hypotheses.shape_segments);
 }
 
 PoseHypothesis refined_hypothesis(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,

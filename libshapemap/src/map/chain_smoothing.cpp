@@ -53,21 +53,19 @@ std::vector<Choice> best_choices(const ChoiceChain& chain, double full_margin) {
   const Sums after = sums_after(chain);
   std::vector<Choice> choices;
   for (std::size_t link = 0; link < chain.scores.size(); ++link) {
-    double best = kNever;
-    double second = kNever;
-    Choice choice;
+    std::vector<double> sums;
     for (std::size_t i = 0; i < chain.scores[link].size(); ++i) {
-      const double sum = before[link][i] + chain.scores[link][i] + after[link][i];
-      if (sum > best) {
-        second = best;
-        best = sum;
-        choice.alternative = i;
-      } else {
-        second = std::max(second, sum);
-      }
+      sums.push_back(before[link][i] + chain.scores[link][i] + after[link][i]);
     }
-    choice.margin = second == kNever ? full_margin : std::min(full_margin, best - second);
-    choices.push_back(choice);
+    const auto best = std::max_element(sums.begin(), sums.end());
+    Choice choice;
+    choice.alternative = static_cast<std::size_t>(best - sums.begin());
+    choice.margin = full_margin;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      choice.behind.push_back(*best - sums[i]);
+      if (i != choice.alternative) choice.margin = std::min(choice.margin, choice.behind.back());
+    }
+    choices.push_back(std::move(choice));
   }
   return choices;
 }

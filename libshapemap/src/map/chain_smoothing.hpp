@@ -14,7 +14,8 @@ struct ChoiceChain {
 
 struct Choice {
   std::size_t alternative = 0;
-  double margin = 0.0;  ///< what the best chain with this alternative is better by than the best without it
+  double margin = 0.0;         ///< what the best chain with this alternative is better by than the best without it
+  std::vector<double> behind;  ///< per alternative: what the best chain of all is better by than the best with it
 };
 
 /// The chain with the largest sum (Viterbi 1967), and how much each of its choices matters. `full_margin` is the margin

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "keyframe_chain.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 
@@ -19,6 +20,34 @@ Eigen::Matrix3d with_usual_motion(const Eigen::Matrix3d& covariance, bool is_exp
   return 0.5 * (both + both.transpose());
 }
 
+/// Poses so near to each other are one, as far as the scans and what is usual hold them.
+constexpr double kSamePlace_m = 0.1;
+constexpr double kSameHeading_rad = 10 * kDegree;
+constexpr double kSameDeviations = 3.0;
+
+bool is_same_place(const PoseConstraint& one, const Pose2& other) {
+  if (angle_between(one.a_from_b.theta_rad, other.theta_rad) > kSameHeading_rad) return false;
+  const Point2 off_m = other.translation() - one.a_from_b.translation();
+  const Eigen::Matrix2d spread =
+      one.covariance.topLeftCorner<2, 2>() + kSamePlace_m * kSamePlace_m * Eigen::Matrix2d::Identity();
+  return off_m.dot(spread.ldlt().solve(off_m)) < kSameDeviations * kSameDeviations;
+}
+
+/// What the choice of a link leads by over all that is another place.
+double margin_to_other_places(const KeyframeChain& chain, std::size_t link) {
+  const std::vector<PoseHypothesis>& hypotheses = chain.links[link].hypotheses;
+  const Choice& choice = chain.links[link].choice;
+  double margin = kFullMargin;
+  if (hypotheses.size() < 2) return margin;
+  const PoseConstraint chosen = link_constraint(chain, link, choice.alternative);
+  for (std::size_t k = 0; k < hypotheses.size(); ++k) {
+    if (k != choice.alternative && !is_same_place(chosen, hypotheses[k].ref_from_query)) {
+      margin = std::min(margin, choice.behind[k]);
+    }
+  }
+  return margin;
+}
+
 }  // namespace
 
 PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std::size_t k) {
@@ -29,9 +58,22 @@ PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std
   return {link, link + 1, pose.ref_from_query, with_usual_motion(pose_covariance(pose.fit), is_expected), 0.0};
 }
 
-double link_probability(const KeyframeLink& link, const ConfidenceOptions& options) {
+double link_probability(const KeyframeLink& link) {
   if (link.settled_covariance) return 1.0;
-  return judged(link.hypotheses, link.choice.alternative, link.choice.margin, options).probability;
+  if (link.hypotheses.empty()) return 0.0;
+  return match_probability(link.hypotheses[link.choice.alternative], link.choice.margin);
+}
+
+MotionHabit motion_habit(const KeyframeChain& chain) {
+  constexpr double kCertain = 0.9;
+  constexpr double kHeld_m = 0.2;
+  std::vector<Pose2> motions;
+  for (const KeyframeLink& link : chain.links) {
+    if (link.settled_covariance || link_probability(link) < kCertain) continue;
+    const PoseHypothesis& chosen = link.hypotheses[link.choice.alternative];
+    if (worst_deviation_m(pose_covariance(chosen.fit)) < kHeld_m) motions.push_back(chosen.ref_from_query);
+  }
+  return MotionHabit(motions);
 }
 
 std::vector<std::vector<double>> no_bonus(const KeyframeLink& link, const KeyframeLink& next) {
@@ -47,7 +89,10 @@ void choose_hypotheses(KeyframeChain& chain) {
     choices.bonus.push_back(link.bonus);
   }
   const std::vector<Choice> best = best_choices(choices, kFullMargin);
-  for (std::size_t i = 0; i < chain.links.size(); ++i) chain.links[i].choice = best[i];
+  for (std::size_t i = 0; i < chain.links.size(); ++i) {
+    chain.links[i].choice = best[i];
+    chain.links[i].choice.margin = margin_to_other_places(chain, i);
+  }
 }
 
 }  // namespace shapemap

@@ -39,6 +39,8 @@ struct AttachedScan {
 struct KeyframeLink {
   std::vector<PoseHypothesis> hypotheses;  ///< none: another log starts here, or nothing fits
   std::vector<std::vector<double>> bonus;  ///< [hypothesis][that of the next link]: how well the two go together
+  std::size_t num_own = 0;   ///< so many, the first, are of these two scans; the rest is by way of scans further back
+  bool is_complete = false;  ///< nothing more will be looked for until all is known
   Choice choice;
   std::size_t num_of_chain = 0;  ///< where the link was revised: the hypotheses before that, which come first
   /// Keyframes between the two were retired, see retire_keyframes(): there is one hypothesis, which is that of the map
@@ -57,13 +59,17 @@ struct KeyframeChain {
 /// must not shrink because its scans slide.
 PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std::size_t k);
 
-/// Of the hypothesis that the chain chose.
-double link_probability(const KeyframeLink& link, const ConfidenceOptions& options);
+/// Of the place that the chain chose.
+double link_probability(const KeyframeLink& link);
+
+/// By the motions that are as good as certain, and that the scans hold in every direction.
+MotionHabit motion_habit(const KeyframeChain& chain);
 
 /// KeyframeLink::bonus of links that may be anything to each other.
 std::vector<std::vector<double>> no_bonus(const KeyframeLink& link, const KeyframeLink& next);
 
-/// Each link takes the hypothesis that goes together best with the links before and after it.
+/// Each link takes the hypothesis that goes together best with the links before and after it; its margin is that to the
+/// best that is another place. Along a bare corridor, hypotheses that slide along it are none.
 void choose_hypotheses(KeyframeChain& chain);
 
 }  // namespace shapemap

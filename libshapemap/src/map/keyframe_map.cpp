@@ -32,7 +32,7 @@ void find_parts(const KeyframeChain& chain, const std::vector<PoseConstraint>& l
     if (map.link_choice[i] == kCut) continue;
     const bool alone = lone[next++];
     map.held_by_loops[i] = !alone;
-    if (alone && link_probability(chain.links[i], options.robust.confidence) < options.smoothing.split_below) {
+    if (alone && link_probability(chain.links[i]) < options.smoothing.split_below) {
       map.link_choice[i] = kCut;
     }
   }
@@ -107,7 +107,7 @@ KeyframeMap map_with_loops(const KeyframeChain& chain, const std::vector<LoopHyp
   observer.on_stage("whole map");
   KeyframeMap map = map_of_chain(chain, options);
   const NodeViews views = views_of(chain);
-  const std::vector<ChainLink> links = chain_links(chain, options.robust.confidence);
+  const std::vector<ChainLink> links = chain_links(chain);
   const std::vector<LoopHypothesis> hypotheses = without_look_alikes(found, links, map.map_from_keyframe);
   const std::vector<LoopCluster> clusters = loop_clusters(hypotheses, map.map_from_keyframe, trusted_pieces(links), {});
   const VisibilityOptions& visibility = options.robust.search.visibility;

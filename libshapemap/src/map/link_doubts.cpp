@@ -117,8 +117,7 @@ class LinkDoubts {
   bool is_doubtful(std::size_t i) const {
     if (map_.component[i] != map_.component[i + 1] || chain_.links[i].hypotheses.empty()) return false;
     if (!both_look_all_round(i, i + 1)) return false;
-    const double chance =
-        map_.link_choice[i] == kCut ? 0.0 : link_probability(chain_.links[i], options_.robust.confidence);
+    const double chance = map_.link_choice[i] == kCut ? 0.0 : link_probability(chain_.links[i]);
     return chance < options_.link_revision.doubt_below;
   }
 
@@ -160,7 +159,7 @@ class LinkDoubts {
     KeyframeLink& link = chain_.links[i];
     if (thoroughly) {
       search_again(i);
-    } else if (link_probability(link, options_.robust.confidence) < options_.loop_search.bridge_below) {
+    } else if (link_probability(link) < options_.loop_search.bridge_below) {
       add_bridges(i);
     }
     doubt.hypotheses = {static_cast<int>(doubt.in_map)};

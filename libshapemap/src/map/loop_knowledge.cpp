@@ -11,7 +11,7 @@
 namespace shapemap {
 namespace {
 
-ChainLink chain_link(const KeyframeChain& chain, std::size_t i, const ConfidenceOptions& options) {
+ChainLink chain_link(const KeyframeChain& chain, std::size_t i) {
   const KeyframeLink& link = chain.links[i];
   ChainLink result;
   for (std::size_t rank = 0; rank < link.hypotheses.size(); ++rank) {
@@ -19,7 +19,7 @@ ChainLink chain_link(const KeyframeChain& chain, std::size_t i, const Confidence
     const PoseConstraint constraint = link_constraint(chain, i, k);
     result.alternatives.push_back({constraint.a_from_b, constraint.covariance, link.hypotheses[k].score});
   }
-  if (result.exists()) result.probability = link_probability(link, options);
+  if (result.exists()) result.probability = link_probability(link);
   for (const PoseHypothesis& pose : link.hypotheses) {
     result.any_probability = std::max(result.any_probability, match_probability(pose, kFullMargin));
   }
@@ -39,9 +39,9 @@ std::size_t ranked_hypothesis(const KeyframeLink& link, std::size_t rank) {
   return rank <= link.choice.alternative ? rank - 1 : rank;
 }
 
-std::vector<ChainLink> chain_links(const KeyframeChain& chain, const ConfidenceOptions& options) {
+std::vector<ChainLink> chain_links(const KeyframeChain& chain) {
   std::vector<ChainLink> links;
-  for (std::size_t i = 0; i < chain.links.size(); ++i) links.push_back(chain_link(chain, i, options));
+  for (std::size_t i = 0; i < chain.links.size(); ++i) links.push_back(chain_link(chain, i));
   return links;
 }
 
@@ -68,7 +68,7 @@ void find_loops(const KeyframeChain& chain, std::size_t end, const MappingOption
   for (std::size_t i = known.num_bridged; i < end_of_links; ++i) {
     const KeyframeLink& link = chain.links[i];
     if (link.hypotheses.empty()) continue;
-    if (link_probability(link, options.robust.confidence) < options.loop_search.bridge_below) doubtful.push_back(i);
+    if (link_probability(link) < options.loop_search.bridge_below) doubtful.push_back(i);
   }
   known.num_bridged = end_of_links;
   try {

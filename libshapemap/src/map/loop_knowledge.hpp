@@ -20,7 +20,7 @@ struct LoopKnowledge {
 };
 
 NodeViews views_of(const KeyframeChain& chain);
-std::vector<ChainLink> chain_links(const KeyframeChain& chain, const ConfidenceOptions& options);
+std::vector<ChainLink> chain_links(const KeyframeChain& chain);
 
 /// Index of hypothesis number `rank` of a link, when that which the chain chose comes first, as in ChainLink.
 std::size_t ranked_hypothesis(const KeyframeLink& link, std::size_t rank);

@@ -65,7 +65,7 @@ Revisits::Followed Revisits::follow(const KeyframeChain& chain, const std::vecto
   result.stand_ins = std::move(follower.stand_ins());
   // A link that may still change must not become what the map says: it would when the keyframe before it went.
   if (bearings_.is_lost) result.stand_ins[result.num_followed - 1].reset();
-  const std::vector<bool> may_go = settled_keyframes(log_, chain, result.map, options_);
+  const std::vector<bool> may_go = settled_keyframes(log_, chain, result.map);
   for (std::size_t b = first; b < count; ++b) {
     if (!may_go[b]) result.stand_ins[b].reset();
   }

@@ -30,6 +30,8 @@ double companion_score(const Visibility& v) {
   return 3.0 * std::log(0.2 + v.agree / total) - 1.5 * std::log(0.1 + v.crossed / total);
 }
 
+bool more_likely(const PoseHypothesis& a, const PoseHypothesis& b) { return a.score > b.score; }
+
 /// As logarithm of odds, of a scan that is so far off where it was expected.
 double surprise(const Pose2& off) {
   constexpr double kMost = 4.0;
@@ -62,7 +64,16 @@ bool RobustChain::extend(std::size_t most_keyframes) {
     observer_.on_progress(next_, log_.positions.size());
   }
   choose_hypotheses(chain_);
+  expect_the_usual();
+  choose_hypotheses(chain_);
+  if (!options_.loops.close_loops) let_views_go();
   return !is_whole();
+}
+
+/// But for those of the last keyframes, which the next are aligned to.
+void RobustChain::let_views_go() {
+  const std::size_t needed = static_cast<std::size_t>(options_.smoothing.more_references) + 2;
+  for (std::size_t i = 0; i + needed < chain_.keyframes.size(); ++i) chain_.keyframes[i].view.reset();
 }
 
 /// parallel_for(); the seconds that `work` took, summed over the threads.
@@ -138,15 +149,12 @@ void RobustChain::link_keyframes(std::size_t first_new) {
     std::vector<PoseHypothesis>& link = hypotheses(first + i - 1);
     const std::size_t num_own = link.size();
     for (const PoseHypothesis& pose : borrowed[i]) add_if_new(pose, link);
+    chain_.links[first + i - 1].num_own = num_own;
     if (chain_.keyframes[first + i].expected) expect(*chain_.keyframes[first + i].expected, first + i - 1);
-    if (sink_) sink_->on_link({position_of(first + i - 1), position_of(first + i), link, num_own});
   }
   result_.times.align_s += timed_for(count, [&](std::size_t i) {
     if (first + i >= 2) chain_.links[first + i - 2].bonus = companion_scores(first + i - 2);
   });
-  if (options_.loops.close_loops) return;
-  const std::size_t needed = static_cast<std::size_t>(options_.smoothing.more_references) + 2;
-  for (std::size_t i = 0; i + needed < chain_.keyframes.size(); ++i) chain_.keyframes[i].view.reset();
 }
 
 /// Where scans follow each other closely, hypotheses far from where the next was to be expected are less likely.
@@ -156,8 +164,47 @@ void RobustChain::expect(const Pose2& ref_from_query, std::size_t link) {
       refined_hypothesis(view_of_keyframe(link), view_of_keyframe(link + 1), ref_from_query, options_.robust.search),
       found);
   for (PoseHypothesis& pose : found) pose.score -= surprise(inverse(ref_from_query) * pose.ref_from_query);
-  std::stable_sort(found.begin(), found.end(),
-                   [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.score > b.score; });
+  std::stable_sort(found.begin(), found.end(), more_likely);
+}
+
+/// Once it is known how the sensor usually moves, what is unusual scores less, and links that are then in doubt are
+/// looked into again. Where the motion was followed, more is known than that.
+void RobustChain::expect_the_usual() {
+  const MotionHabit habit = motion_habit(chain_);
+  std::vector<std::size_t> links;
+  std::vector<std::size_t> unusual;
+  for (std::size_t i = 0; i < chain_.links.size(); ++i) {
+    const KeyframeLink& link = chain_.links[i];
+    if (link.is_complete || link.settled_covariance) continue;
+    links.push_back(i);
+    if (!link.hypotheses.empty() && !chain_.keyframes[i + 1].expected) unusual.push_back(i);
+  }
+  result_.times.align_s += timed_for(unusual.size(), [&](std::size_t k) { expect_the_usual(habit, unusual[k]); });
+  for (const std::size_t i : unusual) {
+    for (std::size_t k = i - std::min<std::size_t>(i, 1); k <= i && k + 1 < chain_.links.size(); ++k) {
+      chain_.links[k].bonus = companion_scores(k);
+    }
+  }
+  for (const std::size_t i : links) {
+    KeyframeLink& link = chain_.links[i];
+    link.is_complete = true;
+    if (sink_ && !link.hypotheses.empty()) {
+      sink_->on_link({position_of(i), position_of(i + 1), link.hypotheses, link.num_own});
+    }
+  }
+}
+
+void RobustChain::expect_the_usual(const MotionHabit& habit, std::size_t link) {
+  const HypothesisSearchOptions& search = options_.robust.search;
+  std::vector<PoseHypothesis>& known = hypotheses(link);
+  for (PoseHypothesis& pose : known) pose.score -= habit.surprise(pose.ref_from_query);
+  std::stable_sort(known.begin(), known.end(), more_likely);
+  if (match_probability(known.front(), lead_of_first(known)) < options_.loop_closing.doubt_below) {
+    const auto more = usual_hypotheses(view_of_keyframe(link), view_of_keyframe(link + 1), search, habit);
+    known.insert(known.end(), more.begin(), more.end());
+    known = best_distinct(std::move(known), search.hypotheses.kept);
+  }
+  chain_.links[link].num_own = known.size();
 }
 
 std::vector<PoseHypothesis> RobustChain::aligned(std::size_t reference, std::size_t query, SearchKind search,

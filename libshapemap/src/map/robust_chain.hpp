@@ -38,11 +38,14 @@ class RobustChain {
   void link_keyframes(std::size_t first_new);
   void find_hypotheses(std::size_t link);
   void expect(const Pose2& ref_from_query, std::size_t link);
+  void expect_the_usual();
+  void expect_the_usual(const MotionHabit& habit, std::size_t link);
   std::vector<PoseHypothesis> aligned(std::size_t reference, std::size_t query, SearchKind search,
                                       const HypothesisSearchOptions& options) const;
   std::vector<PoseHypothesis> borrow_hypotheses(std::size_t link) const;
   bool in_doubt(const std::vector<PoseHypothesis>& link) const;
   std::vector<std::vector<double>> companion_scores(std::size_t link) const;
+  void let_views_go();
 
   bool starts_log(std::size_t before, std::size_t after) const;
   std::vector<PoseHypothesis>& hypotheses(std::size_t link) { return chain_.links[link].hypotheses; }

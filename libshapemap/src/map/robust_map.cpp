@@ -122,7 +122,8 @@ class Reading {
     const auto settle_at = std::max(static_cast<std::size_t>(options_.keyframes.settle_at), 4 * kKeyframesInUse);
     const bool settles = options_.loops.close_loops && options_.keyframes.settle_at > 0;
     std::size_t most = settles ? settle_at : std::numeric_limits<std::size_t>::max();
-    std::size_t next = most;
+    // Without loops, what was read is let go now and then.
+    std::size_t next = options_.loops.close_loops ? most : settle_at;
     while (growth_.extend(next)) {
       const auto start = std::chrono::steady_clock::now();
       if (chain().keyframes.size() < most) {

@@ -57,13 +57,11 @@ std::vector<StandIn> stand_ins_for(const KeyframeChain& chain, const std::vector
   return fitting;
 }
 
-std::vector<bool> settled_keyframes(const Log& log, const KeyframeChain& chain, const KeyframeMap& map,
-                                    const MappingOptions& options) {
+std::vector<bool> settled_keyframes(const Log& log, const KeyframeChain& chain, const KeyframeMap& map) {
   const std::size_t count = chain.keyframes.size();
   std::vector<bool> sure(chain.links.size());
   for (std::size_t i = 0; i < sure.size(); ++i) {
-    sure[i] = map.link_choice[i] != kCut &&
-              (map.held_by_loops[i] || link_probability(chain.links[i], options.robust.confidence) >= kSureLink);
+    sure[i] = map.link_choice[i] != kCut && (map.held_by_loops[i] || link_probability(chain.links[i]) >= kSureLink);
   }
   std::vector<bool> settled(count, false);
   for (std::size_t i = 1; i + kKeyframesInUse < count; ++i) {
@@ -74,7 +72,7 @@ std::vector<bool> settled_keyframes(const Log& log, const KeyframeChain& chain, 
 
 StandIns find_stand_ins(const Log& log, const KeyframeChain& chain, const KeyframeMap& map,
                         const MappingOptions& options) {
-  const std::vector<bool> settled = settled_keyframes(log, chain, map, options);
+  const std::vector<bool> settled = settled_keyframes(log, chain, map);
   const std::vector<std::vector<std::size_t>> earlier = earlier_at_place(map, options.keyframes);
   std::vector<std::vector<StandIn>> fitting(settled.size());
   parallel_for(settled.size(), options.chain.threads, [&](std::size_t b) {

@@ -40,8 +40,7 @@ std::vector<StandIn> stand_ins_for(const KeyframeChain& chain, const std::vector
 
 /// Per keyframe: whether it may go when another can stand for it. Those at doubtful links stay, those with several
 /// sub-scans, and the last few.
-std::vector<bool> settled_keyframes(const Log& log, const KeyframeChain& chain, const KeyframeMap& map,
-                                    const MappingOptions& options);
+std::vector<bool> settled_keyframes(const Log& log, const KeyframeChain& chain, const KeyframeMap& map);
 
 /// What a map says of each of its keyframes at the place of others.
 struct StandIns {

@@ -67,7 +67,8 @@ std::vector<Choice> by_enumeration(const ChoiceChain& chain) {
     choice.alternative = static_cast<std::size_t>(std::max_element(sums.begin(), sums.end()) - sums.begin());
     choice.margin = kFullMargin;
     for (std::size_t i = 0; i < sums.size(); ++i) {
-      if (i != choice.alternative) choice.margin = std::min(choice.margin, sums[choice.alternative] - sums[i]);
+      choice.behind.push_back(sums[choice.alternative] - sums[i]);
+      if (i != choice.alternative) choice.margin = std::min(choice.margin, choice.behind.back());
     }
     choices.push_back(choice);
   }
@@ -86,6 +87,7 @@ TEST(BestChoices, AreThoseOfAllCombinations) {
     for (std::size_t link = 0; link < found.size(); ++link) {
       EXPECT_EQ(found[link].alternative, expected[link].alternative) << round;
       EXPECT_NEAR(found[link].margin, expected[link].margin, 1e-9) << round;
+      EXPECT_THAT(found[link].behind, ::testing::Pointwise(::testing::DoubleNear(1e-9), expected[link].behind));
     }
   }
 }

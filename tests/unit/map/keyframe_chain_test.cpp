@@ -54,5 +54,56 @@ TEST(LinkConstraint, OfASettledMapIsWhatTheMapSays) {
   EXPECT_EQ(link_constraint(chain, 0, 0).covariance, Eigen::Matrix3d::Identity());
 }
 
+/// `off` the first, and a little worse.
+void add_alternative(const Pose2& off, double behind, KeyframeChain& chain) {
+  KeyframeLink& link = chain.links[0];
+  PoseHypothesis other = link.hypotheses[0];
+  other.ref_from_query = {other.ref_from_query.x_m + off.x_m, other.ref_from_query.y_m + off.y_m,
+                          wrap_angle(other.ref_from_query.theta_rad + off.theta_rad)};
+  other.score -= behind;
+  link.hypotheses.push_back(other);
+}
+
+TEST(ChooseHypotheses, WhatSlidesAlongACorridorIsNoOtherPlace) {
+  KeyframeChain chain = sliding_link();
+  add_alternative({0.8, 0.0, 0.0}, 0.1, chain);
+  add_alternative({-0.8, 0.0, 2 * kDegree}, 0.2, chain);
+  choose_hypotheses(chain);
+  EXPECT_EQ(chain.links[0].choice.alternative, 0U);
+  EXPECT_EQ(chain.links[0].choice.margin, kFullMargin);
+  const double alone = link_probability(chain.links[0]);
+  for (const Pose2& off : {Pose2{4.0, 0.0, 0.0}, Pose2{0.0, 0.8, 0.0}, Pose2{0.0, 0.0, 180 * kDegree}}) {
+    KeyframeChain with = chain;
+    add_alternative(off, 1.5, with);
+    choose_hypotheses(with);
+    EXPECT_EQ(with.links[0].choice.alternative, 0U);
+    EXPECT_NEAR(with.links[0].choice.margin, 1.5, 1e-9);
+    EXPECT_LT(link_probability(with.links[0]), alone);
+  }
+}
+
+TEST(ChooseHypotheses, WhereScansHoldThePlaceSlidingIsOne) {
+  KeyframeChain chain = sliding_link();
+  chain.links[0].hypotheses[0].fit.information(0, 0) = 400.0;
+  add_alternative({0.8, 0.0, 0.0}, 0.1, chain);
+  choose_hypotheses(chain);
+  EXPECT_NEAR(chain.links[0].choice.margin, 0.1, 1e-9);
+}
+
+TEST(MotionHabitOfAChain, IsThatOfLinksThatAreCertainAndHeld) {
+  const test::Laps& laps = test::two_laps();
+  KeyframeChain chain = test::KnownChain(laps).chain;
+  const Pose2 usual = chain.links[5].hypotheses[0].ref_from_query;
+  const Pose2 unheard{-3.0, 0.0, 180 * kDegree};
+  EXPECT_LT(motion_habit(chain).surprise(usual) + 2.0, motion_habit(chain).surprise(unheard));
+  for (KeyframeLink& link : chain.links) link.choice.margin = 0.1;
+  EXPECT_EQ(motion_habit(chain).surprise(unheard), 0.0) << "none is certain";
+  choose_hypotheses(chain);
+  for (KeyframeLink& link : chain.links) link.hypotheses[0].fit.information(0, 0) = 0.0;
+  for (KeyframeLink& link : chain.links) link.hypotheses[0].fit.information.row(0).setZero();
+  for (KeyframeLink& link : chain.links) link.hypotheses[0].fit.information.col(0).setZero();
+  EXPECT_EQ(motion_habit(chain).surprise(unheard), 0.0) << "none is held";
+}
+
 }  // namespace
 }  // namespace shapemap

@@ -86,7 +86,7 @@ TEST(StandIns, AreNotForKeyframesInDoubt) {
   const auto b = static_cast<std::size_t>(first - all.begin());
   known.map.held_by_loops[b] = false;
   known.chain.links[b].choice.margin = 0.01;  // another place fits as well
-  ASSERT_LT(link_probability(known.chain.links[b], {}), 0.6);
+  ASSERT_LT(link_probability(known.chain.links[b]), 0.6);
   EXPECT_FALSE(find_stand_ins(laps.log, known.chain, known.map, quick()).of_keyframe[b]);
   known.map.held_by_loops[b] = true;
   EXPECT_TRUE(find_stand_ins(laps.log, known.chain, known.map, quick()).of_keyframe[b]);
@@ -125,7 +125,7 @@ TEST(RetiredKeyframes, LeaveAChainThatSaysWhatTheMapDid) {
     EXPECT_THAT(link.a_from_b, test::IsNearPose(inverse(a) * b, 1e-9, 1e-9));
     if (!known.chain.links[i].settled_covariance) continue;
     ++num_settled;
-    EXPECT_EQ(link_probability(known.chain.links[i], {}), 1.0);
+    EXPECT_EQ(link_probability(known.chain.links[i]), 1.0);
     EXPECT_TRUE(link.covariance.allFinite());
   }
   EXPECT_GT(num_settled, 0U);

@@ -27,7 +27,7 @@ struct CutForALoop {
     for (std::size_t i = 0; i + 1 < truth.size(); ++i) {
       KeyframeLink& link = chain.links.emplace_back();
       link.hypotheses = {hypothesis_at(*views[i], *views[i + 1], step(i), {})};
-      link.choice = {0, kFullMargin};
+      link.choice = {0, kFullMargin, {0.0}};
     }
     map.map_from_keyframe = truth;
     const Pose2 move = truth[kLink] * step(kLink) * kTurnedAway * inverse(truth[kLink + 1]);

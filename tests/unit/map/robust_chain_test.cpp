@@ -295,5 +295,35 @@ TEST(RobustChain, CountsTheSecondsOfItsStages) {
   EXPECT_EQ(result.times.icp_s, 0.0);
 }
 
+/// A room with a bare corridor: what was learned in the one tells how far the robot goes in the other.
+TEST(RobustChain, GoesAlongABareCorridorAsFarAsItUsuallyDoes) {
+  test::World world = test::bare_corridor();
+  for (int k = 0; k < 14; ++k) test::add_box(world, {0.9 * k, k % 2 == 0 ? 0.9 : -0.9, 0.3 * k}, 0.2, 0.15);
+  Log log;
+  std::mt19937 rng(5);
+  std::vector<Pose2> truth;
+  for (int k = 0; k < 40; ++k) truth.push_back({0.7 * k, 0.1 * std::sin(1.3 * k), 0.1 * std::sin(2.1 * k)});
+  for (const Pose2& pose : truth) log.positions.push_back(test::scan_of(world, pose, test::half_circle(), rng));
+  const MapResult result = mapped(log, without_loops());
+  ASSERT_EQ(result.fragments.size(), 1U);
+  const std::vector<PlacedPosition>& placed = result.fragments[0].positions;
+  ASSERT_EQ(placed.size(), truth.size());
+  for (std::size_t k = 1; k < placed.size(); ++k) {
+    const Pose2 step = inverse(placed[k - 1].map_from_robot) * placed[k].map_from_robot;
+    EXPECT_THAT(step, IsNearPose(inverse(truth[k - 1]) * truth[k], 0.35, 5 * kDegree)) << k;
+  }
+}
+
+/// Views are let go meanwhile, and nothing shows it.
+TEST(RobustChain, OfMoreKeyframesThanAreKeptWithoutLoopsIsOne) {
+  MappingOptions options = without_loops(quick());
+  options.keyframes.step_m = 0.0;
+  options.keyframes.settle_at = 70;
+  const Log log = log_of(walk(200));
+  const MapResult result = mapped(log, options);
+  ASSERT_EQ(result.fragments.size(), 1U);
+  EXPECT_EQ(result.fragments[0].positions.size(), 200U);
+}
+
 }  // namespace
 }  // namespace shapemap

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "shapemap/align/motion_habit.hpp"
 #include "shapemap/align/point_to_line.hpp"
 #include "shapemap/align/visibility.hpp"
 #include "shapemap/core/options.hpp"
@@ -51,6 +52,11 @@ struct PoseHypothesis {
 /// of them has no points.
 std::vector<PoseHypothesis> pose_hypotheses(const ScanView& reference, const ScanView& query,
                                             const HypothesisSearchOptions& options);
+
+/// The same for a scan that most likely follows the other as `habit` says, with more effort: what is unusual scores
+/// less, and is less likely to be looked into.
+std::vector<PoseHypothesis> usual_hypotheses(const ScanView& reference, const ScanView& query,
+                                             const HypothesisSearchOptions& options, const MotionHabit& habit);
 
 /// Refines a pose and judges it.
 PoseHypothesis refined_hypothesis(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,

@@ -60,7 +60,7 @@ struct SmoothingOptions {
   double companion_weight = 0.5;
   double doubt_below = 0.3;
   int more_references = 2;
-  double split_below = 0.0;
+  double split_below = 0.01;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -68,7 +68,8 @@ struct SmoothingOptions {
           self.companion_weight);
     visit(Field{"doubt-below", "a less probable alignment is helped by scans further back", 0, 1}, self.doubt_below);
     visit(Field{"more-references", "so many of them", 0, 10}, self.more_references);
-    visit(Field{"split-below", "a less probable alignment splits the map instead", 0, 1}, self.split_below);
+    visit(Field{"split-below", "a less probable alignment that no loop holds splits the map instead", 0, 1},
+          self.split_below);
   }
 };
 
