@@ -132,6 +132,14 @@ double LoopProblem::worth_in(const LoopChoice& choice, std::size_t cluster) cons
   return std::clamp(clusters_[cluster].strength - strongest, 0.0, options_.trust_cap);
 }
 
+std::vector<std::size_t> LoopProblem::rings(const LoopChoice& choice) const {
+  std::vector<PoseConstraint> held = constraints(choice);
+  const std::vector<bool> lone = lone_constraints(num_nodes_, held);
+  std::size_t c = 0;
+  held.erase(std::remove_if(held.begin(), held.end(), [&](const PoseConstraint&) { return lone[c++]; }), held.end());
+  return connected_parts(num_nodes_, held);
+}
+
 /// Of alternatives that are not the best, of links that are cut, and of unusual steps and turns.
 double LoopProblem::cost_of_links(const LoopChoice& choice) const {
   double cost = 0.0;
@@ -157,8 +165,8 @@ double LoopProblem::cost_of_links(const LoopChoice& choice) const {
 }
 
 void LoopProblem::rate(LoopChoice& choice) {
-  choice.value =
-      MapEvidence::kWeight * evidence_.of(choice.map_from_node) - 0.5 * choice.chi_square - cost_of_links(choice);
+  choice.value = MapEvidence::kWeight * evidence_.of(choice.map_from_node, rings(choice)) - 0.5 * choice.chi_square -
+                 cost_of_links(choice);
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
     if (choice.accepted[k]) choice.value += worth_in(choice, k);
   }

@@ -50,6 +50,8 @@ class LoopProblem {
   /// How far the map is off what the best member of a cluster says.
   Pose2 off(const LoopChoice& choice, std::size_t cluster) const;
   std::vector<PoseConstraint> constraints(const LoopChoice& choice) const;
+  /// For each node, a number that it shares with those that loops hold to it.
+  std::vector<std::size_t> rings(const LoopChoice& choice) const;
   const PoseConstraint& best_member(std::size_t cluster) const { return loop_constraints_[cluster].front(); }
   /// What closing a loop is worth by itself.
   double worth(std::size_t cluster) const;

@@ -17,6 +17,11 @@ constexpr std::size_t kSameStretch = 8;  // all pairs of nodes this near along t
 /// many places are laid on each other, pairs that happen to go together would be without number.
 constexpr double kMostByOthers = 1.0;
 
+/// Nodes so many apart along a chain that no loop holds may be metres from where the map has them; so much of what they
+/// tell counts.
+constexpr std::size_t kLongChain = 40;
+constexpr double kUnheld = 0.2;
+
 constexpr std::size_t kStride = 3;
 constexpr double kSlack = 2.0;
 constexpr std::size_t kPairsBetween = 60;  // of two pieces, about so many tell enough
@@ -39,10 +44,12 @@ double MapEvidence::of_pair(const Visibility& v) {
   return 2.0 * std::log((0.2 + v.agree / total) / 0.2) - 2.0 * std::log((0.05 + v.crossed / total) / 0.05);
 }
 
-double MapEvidence::of(const std::vector<Pose2>& map_from_node) {
+double MapEvidence::of(const std::vector<Pose2>& map_from_node, const std::vector<std::size_t>& ring_of_node) {
   std::vector<RelativePose> pairs;
   for (const auto& [a, b] : near_pairs(map_from_node, kWithin_m)) {
-    if (is_asked(a, b)) pairs.push_back({a, b, inverse(map_from_node[a]) * map_from_node[b]});
+    if (!is_asked(a, b)) continue;
+    const bool is_held = ring_of_node.empty() || b - a < kLongChain || ring_of_node[a] == ring_of_node[b];
+    pairs.push_back({a, b, inverse(map_from_node[a]) * map_from_node[b], is_held ? 1.0 : kUnheld});
   }
   return of_pairs(pairs);
 }
@@ -56,7 +63,7 @@ double MapEvidence::between(const std::vector<Pose2>& pose_in_piece, const std::
       if ((pose_in_piece[i].translation() - there.translation()).squaredNorm() >= kWithin_m * kWithin_m) continue;
       const Pose2 f_from_j = inverse(pose_in_piece[i]) * there;
       if (is_asked(std::min(i, j), std::max(i, j))) {
-        pairs.push_back(i < j ? RelativePose{i, j, f_from_j} : RelativePose{j, i, inverse(f_from_j)});
+        pairs.push_back(i < j ? RelativePose{i, j, f_from_j, 1.0} : RelativePose{j, i, inverse(f_from_j), 1.0});
       }
     }
   }
@@ -84,7 +91,7 @@ double MapEvidence::of_pairs(const std::vector<RelativePose>& pairs, double each
   double sum = 0.0;
   std::map<std::size_t, double> by_others;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const double value = known[i]->value * each_stands_for;
+    const double value = known[i]->value * each_stands_for * pairs[i].counts;
     if (value < 0.0 || pairs[i].b - pairs[i].a < kSameStretch) {
       sum += value;
     } else {

@@ -49,6 +49,18 @@ TEST(LoopChoiceOfMap, TakesTheAlternativesAndLoopsThatAgreeWithTheMap) {
   EXPECT_GT(choice.value, ring.problem().chain_alone().value + 20.0);
 }
 
+TEST(LoopChoice, RingsAreWhatLoopsHold) {
+  Ring ring;
+  LoopProblem problem = ring.problem();
+  const std::vector<std::size_t> of_chain = problem.rings(problem.chain_alone());
+  for (std::size_t n = 0; n < of_chain.size(); ++n) EXPECT_EQ(of_chain[n], n) << "each by itself";
+  LoopChoice cut = problem.of_map(ring.truth);
+  const std::vector<std::size_t> closed = problem.rings(cut);
+  for (std::size_t n = 0; n <= kRingLap; ++n) EXPECT_EQ(closed[n], 0U) << n;
+  cut.accepted.assign(cut.accepted.size(), 0);
+  EXPECT_EQ(problem.rings(cut), of_chain) << "without a loop, none is held";
+}
+
 TEST(LoopChoiceOfMap, CutsALinkThatDisagreesWhereALoopHoldsTheRest) {
   Ring ring;
   ring.spoil(20, false);

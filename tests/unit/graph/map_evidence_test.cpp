@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <random>
 
 #include "support/ring_walk.hpp"
@@ -83,6 +84,21 @@ TEST(MapEvidence, IsBestForTheTruthAndWorseTheMoreTheMapIsBent) {
     EXPECT_LT(value, before - 10.0) << drift_deg;
     before = value;
   }
+}
+
+/// Two laps of a chain that is bent: where a loop should hold the second to the first, and where none does.
+TEST(MapEvidence, OfWhatOnlyALongChainHoldsCountsLittle) {
+  const std::vector<Pose2> truth = test::ring_walk(2 * test::kRingLap, 2);
+  const test::Views views = test::views_along(test::ring_world(1), truth);
+  const std::vector<Pose2> bent = test::chained(test::drifting_links(truth, 1.2 * kDegree));
+  ASSERT_GT(truth.size(), 45U) << "some pairs are far along the chain";
+  std::vector<std::size_t> one_each(truth.size());
+  std::iota(one_each.begin(), one_each.end(), std::size_t{0});
+  MapEvidence evidence(views, {}, 1);
+  const std::vector<std::size_t> one_ring(truth.size(), 0);
+  EXPECT_EQ(evidence.of(bent, one_ring), evidence.of(bent));
+  EXPECT_GT(evidence.of(bent, one_each), evidence.of(bent) + 1.0);
+  EXPECT_LE(evidence.of(truth, one_each), evidence.of(truth));
 }
 
 TEST(MapEvidence, TellsAgainstTwoPlacesOnTopOfEachOther) {

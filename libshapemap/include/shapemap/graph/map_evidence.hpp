@@ -24,7 +24,9 @@ class MapEvidence {
   /// What counts of it: pairs of scans do not tell independently of each other.
   static constexpr double kWeight = 0.5;
 
-  double of(const std::vector<Pose2>& map_from_node);
+  /// `ring_of_node` tells nodes that loops hold to each other. Of all others, a long chain has bent, and whether they
+  /// go together at the poses of the map tells little; without it, all are held.
+  double of(const std::vector<Pose2>& map_from_node, const std::vector<std::size_t>& ring_of_node = {});
 
   /// Of the pairs of which one node is in `f` and the other in `g`, two pieces with a frame each. Estimated from a part
   /// of them where they are many.
@@ -45,6 +47,7 @@ class MapEvidence {
     std::size_t a;
     std::size_t b;  ///< the later one
     Pose2 a_from_b;
+    double counts = 1.0;
   };
   double of_pairs(const std::vector<RelativePose>& pairs, double each_stands_for = 1.0);
 
