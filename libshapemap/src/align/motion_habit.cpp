@@ -19,7 +19,7 @@ constexpr double kAngleKernel_rad = 12 * kDegree;
 /// The direction of a step tells the more, the longer it is, up to this length.
 constexpr double kHasDirection_m = 0.5;
 
-/// Among many motions, this share is of a kind that was never seen before; so few tell half as much as can be told.
+/// The share of motions of a kind that was never seen before: this among many, half where so few are known.
 constexpr double kLeastUnheard = 0.03;
 constexpr double kFew = 6.0;
 

@@ -39,7 +39,7 @@ struct AttachedScan {
 struct KeyframeLink {
   std::vector<PoseHypothesis> hypotheses;  ///< none: another log starts here, or nothing fits
   std::vector<std::vector<double>> bonus;  ///< [hypothesis][that of the next link]: how well the two go together
-  std::size_t num_own = 0;   ///< so many, the first, are of these two scans; the rest is by way of scans further back
+  std::size_t num_own = 0;   ///< so many, the first, are the best first; the rest is by way of scans further back
   bool is_complete = false;  ///< nothing more will be looked for until all is known
   Choice choice;
   std::size_t num_of_chain = 0;  ///< where the link was revised: the hypotheses before that, which come first

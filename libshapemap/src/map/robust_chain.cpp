@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <set>
 
 #include "shapemap/align/robust_align.hpp"
 #include "shapemap/core/parallel_for.hpp"
@@ -180,11 +181,14 @@ void RobustChain::expect_the_usual() {
     if (!link.hypotheses.empty() && !chain_.keyframes[i + 1].expected) unusual.push_back(i);
   }
   result_.times.align_s += timed_for(unusual.size(), [&](std::size_t k) { expect_the_usual(habit, unusual[k]); });
+  std::set<std::size_t> pairs;  // of a link and the next, of which one has changed
   for (const std::size_t i : unusual) {
-    for (std::size_t k = i - std::min<std::size_t>(i, 1); k <= i && k + 1 < chain_.links.size(); ++k) {
-      chain_.links[k].bonus = companion_scores(k);
-    }
+    if (i > 0) pairs.insert(i - 1);
+    if (i + 1 < chain_.links.size()) pairs.insert(i);
   }
+  const std::vector<std::size_t> changed(pairs.begin(), pairs.end());
+  result_.times.align_s +=
+      timed_for(changed.size(), [&](std::size_t k) { chain_.links[changed[k]].bonus = companion_scores(changed[k]); });
   for (const std::size_t i : links) {
     KeyframeLink& link = chain_.links[i];
     link.is_complete = true;

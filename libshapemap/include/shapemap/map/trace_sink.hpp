@@ -33,7 +33,7 @@ struct TracedLink {
   std::size_t reference_index = 0;
   std::size_t query_index = 0;
   const std::vector<PoseHypothesis>& hypotheses;
-  std::size_t num_own = 0;  ///< so many, the first, are from these two scans; the rest is by way of scans further back
+  std::size_t num_own = 0;  ///< so many, the first, are the best first; the rest is by way of scans further back
 };
 
 /// What it chose, looking at the whole log.
