@@ -9,16 +9,28 @@ import json
 import os
 import sys
 import tempfile
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from evaluate_arena import ROOT, parse_seeds, run_mapper
+from shapemap_sim.known_surfaces import laid_together
 from shapemap_sim.poses import Array
 from shapemap_sim.read import read_tum
 from shapemap_sim.simulation import Simulation, simulate
-from shapemap_sim.whole_maps import WholeMap, fragment_errors, judge, lost_map, mean_of_sub_scans, not_right, summary
+from shapemap_sim.whole_maps import (
+    WholeMap,
+    fragment_errors,
+    judge,
+    link_outcomes,
+    links_table,
+    lost_map,
+    mean_of_sub_scans,
+    not_right,
+    summary,
+)
 from shapemap_sim.write import nist_text, without_nan, write_whole
 from simulate_arena import add_arena_arguments, number, options_from
 
@@ -28,6 +40,12 @@ EXAMPLE = """example:
 
 Errors of a map, and of each fragment beside it, are those left after the planar motion that fits its positions best.
 Exit status: 0 all runs gave a map, 1 some did not, 2 wrong usage."""
+
+
+CEILINGS: dict[str, Callable[[Simulation], dict[int, Array]]] = {
+    "sub-scans": lambda simulation: mean_of_sub_scans(simulation.drive),
+    "beams": laid_together,
+}
 
 
 def read_fragments(folder: Path, simulation: Simulation) -> list[dict[int, Array]]:
@@ -50,7 +68,7 @@ def run_seed(seed: int, arguments: argparse.Namespace) -> WholeMap:
     simulation = simulate(options_from(arguments, seed))
     truth = simulation.drive.map_from_robot
     if arguments.ceiling:
-        return judge(seed, truth, [mean_of_sub_scans(simulation.drive)])
+        return judge(seed, truth, [CEILINGS[arguments.ceiling](simulation)])
     with tempfile.TemporaryDirectory(prefix=f"arena{seed}_") as name:
         folder = Path(name)
         write_whole(folder / "arena.nist", nist_text(simulation))
@@ -67,7 +85,8 @@ def run_seed(seed: int, arguments: argparse.Namespace) -> WholeMap:
         if report is None:
             return lost_map(seed, len(truth), fault)
         fragments = read_fragments(folder, simulation)
-    result = judge(seed, truth, fragments, report.get("seconds", {}).get("wall"))
+    links = link_outcomes(report.get("positions", []), truth)
+    result = judge(seed, truth, fragments, report.get("seconds", {}).get("wall"), links)
     if arguments.pictures and result.verdict != "right":
         save_picture(arguments.pictures, seed, simulation, fragments)
     return result
@@ -103,7 +122,14 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     )
     add("--method", choices=("robust", "paper"), default="robust", help="of alignment (default %(default)s)")
     add("--arg", action="append", default=[], metavar="ARG", help="passed on to the mapper; repeat for more")
-    add("--ceiling", action="store_true", help="judge what the true poses of all sub-scans say, instead of a map")
+    add(
+        "--ceiling",
+        choices=tuple(CEILINGS),
+        nargs="?",
+        const="sub-scans",
+        help="judge the most that can be known, instead of a map: what the true poses of all sub-scans say (the "
+        "default), or the best that their beams say to one who knows which beam met which face",
+    )
     add("--jobs", type=number(1, 256, int), default=2, metavar="N", help="arenas at the same time (default 2)")
     add("--timeout-s", type=number(1, 86400), default=300.0, metavar="S", help="for one arena (default 300)")
     add("--json", type=Path, metavar="FILE", help="write what became of each seed, with its largest errors")
@@ -126,7 +152,7 @@ def main(argv: list[str] | None = None) -> int:
             pool.shutdown(cancel_futures=True)
             print(f"evaluate_arena_maps.py: {error}", file=sys.stderr)
             return 2
-    print("\n\n".join(part for part in (summary(maps), not_right(maps)) if part))
+    print("\n\n".join(part for part in (summary(maps), links_table(maps), not_right(maps)) if part))
     if arguments.json:
         write_whole(arguments.json, as_json(maps, arguments))
     return 1 if any(one.fault for one in maps) else 0

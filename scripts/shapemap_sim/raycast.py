@@ -46,6 +46,17 @@ class RayCaster:
             nearest = np.minimum(nearest, self._arcs(origin, height_m, directions, slopes).min(axis=1))
         return nearest * np.sqrt(1.0 + slopes**2)
 
+    def face_hit(self, origin: Array, height_m: float, angles_rad: Array, slopes: Array) -> NDArray[np.int64]:
+        """Which flat face each beam meets first; -1 where it meets something round, the floor or nothing."""
+        directions = np.stack([np.cos(angles_rad), np.sin(angles_rad)], axis=-1)
+        every = np.ones(len(self._length), dtype=bool)
+        if not every.any():
+            return np.full(len(angles_rad), -1)
+        distances = self._faces(every, origin, height_m, directions, slopes)
+        nearest = self.cast(origin, height_m, angles_rad, slopes) / np.sqrt(1.0 + slopes**2)
+        is_face = np.isfinite(nearest) & (distances.min(axis=1) <= nearest + NEAREST_M)
+        return np.where(is_face, distances.argmin(axis=1), -1)
+
     @staticmethod
     def _floor(height_m: float, slopes: Array) -> Array:
         """Horizontal distance [m] at which a descending beam meets the floor."""

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +20,8 @@ FAR_OFF_M = 0.30  # as for pairs: more is another place
 FAR_OFF_DEG = 5.0
 
 Fragment = Mapping[int, Array]  # pose `[3]` by index of the position
+
+STATED = (0.0, 0.5, 0.92, 0.99, 1.0)  # bounds of the rows of `links_table`
 
 
 def best_motion(found: Array, truth: Array) -> Array:
@@ -62,7 +66,8 @@ def fragment_errors(fragment: Fragment, truth: Array) -> FragmentErrors:
 @dataclass(frozen=True)
 class WholeMap:
     """What became of one seed: the map and the fragments beside it, largest first. Errors are the largest over all
-    fragments, each by its own motion; NaN without any. `sizes`: positions of each fragment."""
+    fragments, each by its own motion; NaN without any. `sizes`: positions of each fragment. `links`: of each alignment
+    in the map the probability that it states, and whether it is right."""
 
     seed: int
     num_positions: int
@@ -73,6 +78,7 @@ class WholeMap:
     far_off: bool
     fault: str = ""
     seconds: float | None = None
+    links: list[tuple[float, bool]] = field(default_factory=list)
 
     @property
     def whole(self) -> bool:
@@ -90,7 +96,28 @@ class WholeMap:
         return "right" if self.whole else "in pieces"
 
 
-def judge(seed: int, truth: Array, fragments: Sequence[Fragment], seconds: float | None = None) -> WholeMap:
+def link_outcomes(positions: Sequence[Mapping[str, Any]], truth: Array) -> list[tuple[float, bool]]:
+    """`positions` of a report: the probability of each alignment in the map, and whether it is the right place."""
+    outcomes = []
+    for position in positions:
+        alignment = position["alignment"] or {}
+        reference, pose = alignment.get("reference"), alignment.get("ref_from_query")
+        if reference is None or pose is None or positions[reference]["fragment"] != position["fragment"]:
+            continue
+        found = np.array([pose["x_m"], pose["y_m"], np.deg2rad(pose["theta_deg"])])
+        off = compose(inverse(compose(inverse(truth[reference]), truth[position["index"]])), found)
+        right = np.hypot(*off[:2]) < FAR_OFF_M and abs(np.rad2deg(wrap_angle(off[2]))) < FAR_OFF_DEG
+        outcomes.append((float(alignment["probability"]), bool(right)))
+    return outcomes
+
+
+def judge(
+    seed: int,
+    truth: Array,
+    fragments: Sequence[Fragment],
+    seconds: float | None = None,
+    links: Sequence[tuple[float, bool]] = (),
+) -> WholeMap:
     """`fragments` of one seed; those without a position do not count."""
     judged = [fragment_errors(fragment, truth) for fragment in fragments if fragment]
     return WholeMap(
@@ -102,6 +129,7 @@ def judge(seed: int, truth: Array, fragments: Sequence[Fragment], seconds: float
         all(one.within(RIGHT_M, RIGHT_DEG) for one in judged),
         not all(one.within(FAR_OFF_M, FAR_OFF_DEG) for one in judged),
         seconds=seconds,
+        links=list(links),
     )
 
 
@@ -140,6 +168,19 @@ def summary(maps: Sequence[WholeMap]) -> str:
         share = 100 * sum(hits) / max(1, len(hits))
         lines.append(f"| {name} | {sum(hits)} | {share:.1f} % ({100 * low:.1f}-{100 * high:.1f}) |")
     return "\n".join(lines)
+
+
+def links_table(maps: Sequence[WholeMap]) -> str:
+    """How many alignments are right, by what is stated of them; empty when there is none."""
+    links = np.array([link for one in maps for link in one.links]).reshape(-1, 2)
+    lines = ["| alignments stated to be right by | number | right | mean stated |", "|---|---|---|---|"]
+    for low, high in pairwise(STATED):
+        within = links[(links[:, 0] >= low) & ((links[:, 0] < high) | (high == STATED[-1]))]
+        if len(within):
+            share = f"{100 * within[:, 1].mean():.1f} %"
+            mean = f"{100 * within[:, 0].mean():.1f} %"
+            lines.append(f"| {low:g} to {high:g} | {len(within)} | {within[:, 1].sum():.0f}, {share} | {mean} |")
+    return "\n".join(lines) if len(links) else ""
 
 
 def not_right(maps: Sequence[WholeMap]) -> str:

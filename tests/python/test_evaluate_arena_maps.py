@@ -6,16 +6,27 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import evaluate_arena_maps
-from shapemap_sim.poses import Array, compose
+from shapemap_sim.poses import Array, compose, inverse
 from shapemap_sim.read import read_tum
 from shapemap_sim.robot import RobotOptions, drive
 from shapemap_sim.simulation import SimulationOptions, simulate
-from shapemap_sim.whole_maps import best_motion, fragment_errors, judge, lost_map, mean_of_sub_scans, not_right, summary
+from shapemap_sim.whole_maps import (
+    best_motion,
+    fragment_errors,
+    judge,
+    link_outcomes,
+    links_table,
+    lost_map,
+    mean_of_sub_scans,
+    not_right,
+    summary,
+)
 from shapemap_sim.write import tum_text
 
 ELSEWHERE = np.array([3.0, -7.0, np.deg2rad(130)])
@@ -163,6 +174,31 @@ def test_the_ceiling_needs_no_mapper(tmp_path: Path, capsys: pytest.CaptureFixtu
     arguments = ["--seeds", "5", "--positions", "3", "--jobs", "1", "--heading-sigma-deg", "0", "--ceiling"]
     assert evaluate_arena_maps.main([*arguments, "--cli", str(tmp_path / "none")]) == 0
     assert "| whole, and all within 10 cm and 1 deg | 1 |" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("ceiling", ["sub-scans", "beams"])
+def test_what_may_be_known_at_most_is_a_choice(ceiling: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert evaluate_arena_maps.main(["--seeds", "5", "--positions", "3", "--jobs", "1", "--ceiling", ceiling]) == 0
+    assert "| whole, and all within 30 cm and 5 deg | 1 |" in capsys.readouterr().out
+
+
+def reported(truth: Array, index: int, off_deg: float, fragment: int = 0, probability: float = 0.9) -> dict[str, Any]:
+    """An alignment to the position before, as a report has it."""
+    pose = compose(compose(inverse(truth[index - 1]), truth[index]), np.array([0.0, 0.0, np.deg2rad(off_deg)]))
+    found = {"x_m": pose[0], "y_m": pose[1], "theta_deg": np.rad2deg(pose[2])}
+    alignment = {"reference": index - 1, "ref_from_query": found, "probability": probability}
+    return {"index": index, "fragment": fragment, "alignment": alignment}
+
+
+def test_links_of_the_map_are_right_or_not(truth: Array) -> None:
+    positions = [{"index": 0, "fragment": 0, "alignment": None}, reported(truth, 1, 2.0), reported(truth, 2, 20.0)]
+    positions += [reported(truth, 3, 20.0, fragment=1), {"index": 4, "fragment": 1, "alignment": {"reference": 3}}]
+    outcomes = link_outcomes(positions, truth)
+    assert outcomes == [(0.9, True), (0.9, False)], "what is not in the map does not count"
+    maps = [judge(1, truth, [moved(truth)], links=outcomes), judge(2, truth, [moved(truth)], links=[(1.0, True)])]
+    assert "| 0.5 to 0.92 | 2 | 1, 50.0 % | 90.0 % |" in links_table(maps)
+    assert "| 0.99 to 1 | 1 | 1, 100.0 % | 100.0 % |" in links_table(maps)
+    assert links_table([judge(3, truth, [moved(truth)])]) == ""
 
 
 def test_program_counts_a_crashed_mapper(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -17,6 +17,8 @@ double lead_of_first(const std::vector<PoseHypothesis>& hypotheses) {
   return hypotheses.size() > 1 ? hypotheses[0].score - hypotheses[1].score : kFullMargin;
 }
 
+double probability_of(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
+
 double match_probability(const PoseHypothesis& best, double margin) {
   constexpr double kLeastMargin = 0.05;  // its logarithm stays finite
   constexpr double kLeastAgree = 0.02;
@@ -26,7 +28,7 @@ double match_probability(const PoseHypothesis& best, double margin) {
   const double log_odds =
       -0.34 + 0.61 * lead + 0.28 * std::log(lead) + 0.58 * best.score + 1.07 * std::log(kLeastAgree + agree);
   // However well the best place fits: of two that fit alike, each is right half of the time.
-  return 1.0 / (1.0 + std::exp(-std::min(log_odds, lead)));
+  return probability_of(std::min(log_odds, lead));
 }
 
 Eigen::Matrix3d pose_covariance(const LineFit& fit, const LineNoise& noise) {

@@ -53,7 +53,7 @@ RankedPose ranked_pose(const PoseHypothesis& pose) {
 }
 
 Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chosen, double margin,
-                 const ConfidenceOptions& options) {
+                 const ConfidenceOptions& options, std::optional<double> probability) {
   Alignment alignment;
   if (hypotheses.empty()) {
     alignment.status = AlignStatus::kNoCorrespondences;
@@ -62,7 +62,7 @@ Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chos
   }
   const PoseHypothesis& best = hypotheses.at(chosen);
   alignment.ref_from_query = best.ref_from_query;
-  alignment.probability = match_probability(best, margin);
+  alignment.probability = probability ? *probability : match_probability(best, margin);
   alignment.covariance = pose_covariance(best.fit);
   alignment.ranked.push_back(ranked_pose(best));
   for (std::size_t i = 0; i < hypotheses.size(); ++i) {

@@ -130,6 +130,7 @@ RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node
   Revision revision(views, std::move(map_from_node), std::move(piece_of_node), visibility, threads);
   RevisedMap result;
   result.choice.assign(doubtful.size(), kCut);
+  result.certainty.assign(doubtful.size(), 0.0);
   std::vector<Verdict> verdicts(doubtful.size());
   std::vector<char> is_stale(doubtful.size(), 1);
   while (observer.keep_going()) {
@@ -144,6 +145,7 @@ RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node
     if (next == doubtful.size()) break;
     const std::size_t link = doubtful[next].link;
     result.choice[next] = verdicts[next].best;
+    result.certainty[next] = verdicts[next].certainty;
     revision.join(link, doubtful[next].candidates[static_cast<std::size_t>(verdicts[next].best)].a_from_b);
     for (std::size_t d = 0; d < doubtful.size(); ++d) {
       const std::size_t joined = revision.piece_of(link);

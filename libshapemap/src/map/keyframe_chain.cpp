@@ -61,6 +61,7 @@ PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std
 double link_probability(const KeyframeLink& link) {
   if (link.settled_covariance) return 1.0;
   if (link.hypotheses.empty()) return 0.0;
+  if (link.certainty) return probability_of(*link.certainty);
   return match_probability(link.hypotheses[link.choice.alternative], link.choice.margin);
 }
 

@@ -43,6 +43,8 @@ struct KeyframeLink {
   bool is_complete = false;  ///< nothing more will be looked for until all is known
   Choice choice;
   std::size_t num_of_chain = 0;  ///< where the link was revised: the hypotheses before that, which come first
+  /// That the map has it right, as logarithm of odds, by what all scans of both sides say: see revise_doubtful_links().
+  std::optional<double> certainty;
   /// Keyframes between the two were retired, see retire_keyframes(): there is one hypothesis, which is that of the map
   /// and certain, and this is its covariance.
   std::optional<Eigen::Matrix3d> settled_covariance;
@@ -59,7 +61,7 @@ struct KeyframeChain {
 /// must not shrink because its scans slide.
 PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std::size_t k);
 
-/// Of the place that the chain chose.
+/// Of the place that the chain chose, or, where all scans of both sides were asked, of that which they chose.
 double link_probability(const KeyframeLink& link);
 
 /// By the motions that are as good as certain, and that the scans hold in every direction.

@@ -19,7 +19,8 @@ constexpr double kTrusted = 0.5;
 constexpr std::size_t kMembersKept = 3;
 constexpr double kLoopLoss = 2.0;
 
-/// Fills in what hangs together, and by what. Improbable links that alone hold what comes after them are cut.
+/// Fills in what hangs together, and by what. Improbable links that alone hold what comes after them are cut, unless
+/// they are judged later.
 void find_parts(const KeyframeChain& chain, const std::vector<PoseConstraint>& loops, const MappingOptions& options,
                 KeyframeMap& map) {
   const std::size_t count = chain.keyframes.size();
@@ -32,9 +33,8 @@ void find_parts(const KeyframeChain& chain, const std::vector<PoseConstraint>& l
     if (map.link_choice[i] == kCut) continue;
     const bool alone = lone[next++];
     map.held_by_loops[i] = !alone;
-    if (alone && link_probability(chain.links[i]) < options.smoothing.split_below) {
-      map.link_choice[i] = kCut;
-    }
+    if (!alone || is_judged_by_all_scans(chain, i, options)) continue;
+    if (link_probability(chain.links[i]) < options.smoothing.split_below) map.link_choice[i] = kCut;
   }
   constraints = link_constraints(chain, map.link_choice);
   constraints.insert(constraints.end(), loops.begin(), loops.end());
@@ -87,6 +87,11 @@ std::vector<PoseConstraint> link_constraints(const KeyframeChain& chain, const s
     constraints.push_back(link_constraint(chain, i, static_cast<std::size_t>(link_choice[i])));
   }
   return constraints;
+}
+
+bool is_judged_by_all_scans(const KeyframeChain& chain, std::size_t link, const MappingOptions& options) {
+  return options.loops.close_loops && options.link_revision.doubt_below > 0.0 &&
+         looks_all_round(*chain.keyframes[link].view) && looks_all_round(*chain.keyframes[link + 1].view);
 }
 
 KeyframeMap map_of_chain(const KeyframeChain& chain, const MappingOptions& options) {

@@ -25,6 +25,11 @@ struct KeyframeMap {
 /// What the links say by the hypotheses that are chosen, but for those that are cut.
 std::vector<PoseConstraint> link_constraints(const KeyframeChain& chain, const std::vector<int>& link_choice);
 
+/// Whether all scans of both sides decide on a doubtful link in the end, see revise_doubtful_links(), and not its own
+/// probability. What a position does not see tells of no wall that is looked through: of scans that look one way, those
+/// of two different corridors go together well enough. So only positions that look all round are judged.
+bool is_judged_by_all_scans(const KeyframeChain& chain, std::size_t link, const MappingOptions& options);
+
 /// The chain as it is: errors add up.
 KeyframeMap map_of_chain(const KeyframeChain& chain, const MappingOptions& options);
 

@@ -23,14 +23,7 @@ constexpr double kSureLoop = 18.0;
 /// Of a closed loop.
 const Eigen::Matrix3d kLoopCovariance = Eigen::Vector3d(0.01, 0.01, 0.0012).asDiagonal();
 
-/// What a position does not see tells of no wall that is looked through: of scans that look one way, those of two
-/// different corridors go together well enough. Only positions that look all round are judged.
-bool looks_all_round(const ScanView& view) {
-  constexpr double kAllRound_rad = 330 * kDegree;
-  double seen_rad = 0.0;
-  for (const RangeImage& image : view.images) seen_rad += image.step_rad * static_cast<double>(image.beams.size());
-  return seen_rad >= kAllRound_rad;
-}
+double log_odds(double probability) { return std::log(probability / (1.0 - probability)); }
 
 class LinkDoubts {
  public:
@@ -44,9 +37,11 @@ class LinkDoubts {
     poses_ = map_.map_from_keyframe;
     find();
     if (doubts_.empty()) return false;
+    const LinkRevisionOptions& revision = options_.link_revision;
     for (const bool thoroughly : {false, true}) {
       for (Doubt& doubt : doubts_) add_candidates(doubt, thoroughly);
-      settle(thoroughly ? options_.link_revision.least_certainty : options_.link_revision.clear_certainty);
+      settle(std::max(thoroughly ? revision.least_certainty : revision.clear_certainty,
+                      log_odds(options_.smoothing.split_below)));
     }
     for (const Doubt& doubt : doubts_) {
       map_.link_choice[doubt.of_map.link] = kCut;
@@ -84,7 +79,7 @@ class LinkDoubts {
       if (choice == kCut) {
         rest.push_back(std::move(doubts_[d]));
       } else {
-        take(doubts_[d].of_map.link, doubts_[d].hypotheses[static_cast<std::size_t>(choice)]);
+        take(doubts_[d].of_map.link, doubts_[d].hypotheses[static_cast<std::size_t>(choice)], revised.certainty[d]);
       }
     }
     doubts_ = std::move(rest);
@@ -110,19 +105,16 @@ class LinkDoubts {
   }
 
   bool is_sure(const ClosedLoop& loop) const {
-    return loop.strength >= kSureLoop || !both_look_all_round(keyframe_of(loop.a), keyframe_of(loop.b));
+    return loop.strength >= kSureLoop || !looks_all_round(*views_[keyframe_of(loop.a)]) ||
+           !looks_all_round(*views_[keyframe_of(loop.b)]);
   }
 
   /// A link that is cut where loops hold both sides is as doubtful as one that is improbable: so are the loops.
   bool is_doubtful(std::size_t i) const {
     if (map_.component[i] != map_.component[i + 1] || chain_.links[i].hypotheses.empty()) return false;
-    if (!both_look_all_round(i, i + 1)) return false;
+    if (!is_judged_by_all_scans(chain_, i, options_)) return false;
     const double chance = map_.link_choice[i] == kCut ? 0.0 : link_probability(chain_.links[i]);
-    return chance < options_.link_revision.doubt_below;
-  }
-
-  bool both_look_all_round(std::size_t a, std::size_t b) const {
-    return looks_all_round(*views_[a]) && looks_all_round(*views_[b]);
+    return chance < std::max(options_.link_revision.doubt_below, options_.smoothing.split_below);
   }
 
   template <class Which>
@@ -215,7 +207,8 @@ class LinkDoubts {
     }
   }
 
-  void take(std::size_t link, int hypothesis) {
+  void take(std::size_t link, int hypothesis, double certainty) {
+    chain_.links[link].certainty = certainty;
     if (map_.link_choice[link] == hypothesis) return;
     map_.link_choice[link] = hypothesis;
     changed_ = true;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "link_verdict.hpp"
 
+#include "shapemap/align/confidence.hpp"
 #include "shapemap/graph/loop_closing.hpp"
 #include "shapemap/scan/joined_logs.hpp"
 
@@ -19,7 +20,9 @@ void judge_link(const Log& log, const KeyframeChain& chain, const KeyframeMap& m
   const bool is_first_choice = taken == choice.alternative;
   double margin = choice.margin;
   if (!is_first_choice) margin = hypotheses[taken].score - hypotheses[choice.alternative].score;
-  outcome.alignment = judged(hypotheses, taken, margin, options);
+  std::optional<double> probability;
+  if (chain.links[link].certainty) probability = probability_of(*chain.links[link].certainty);
+  outcome.alignment = judged(hypotheses, taken, margin, options, probability);
   outcome.reason = outcome.alignment.reason;
   if (is_cut && !hypotheses.empty() && outcome.reason.empty()) {
     outcome.reason =

@@ -66,6 +66,13 @@ double reach_m(const std::vector<RangeImage>& images) {
 
 }  // namespace
 
+bool looks_all_round(const ScanView& view) {
+  constexpr double kAllRound_rad = 330 * kDegree;
+  double seen_rad = 0.0;
+  for (const RangeImage& image : view.images) seen_rad += image.step_rad * static_cast<double>(image.beams.size());
+  return seen_rad >= kAllRound_rad;
+}
+
 ScanView view_of(const Position& position, const ReturnOptions& returns, const PolylineOptions& polylines,
                  const ShapeOptions& shape, const ViewOptions& options) {
   ScanView view;

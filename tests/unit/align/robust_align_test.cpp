@@ -217,6 +217,13 @@ TEST(Judged, RanksTheChosenOneFirst) {
   expect_consistent(alignment);
 }
 
+TEST(Judged, TakesTheProbabilityThatIsKnownBetter) {
+  const std::vector<PoseHypothesis> good{good_hypothesis({1, 0, 0}, 4.0)};
+  EXPECT_EQ(judged(good, 0, kFullMargin, {0.5, 0.0, 10.0}, 0.75).probability, 0.75);
+  EXPECT_EQ(judged(good, 0, kFullMargin, {0.5, 0.0, 10.0}, 0.75).status, AlignStatus::kOk);
+  EXPECT_EQ(judged(good, 0, kFullMargin, {0.5, 0.0, 10.0}, 0.25).status, AlignStatus::kAmbiguous);
+}
+
 TEST(Judged, GivesEachVerdictForItsReason) {
   const std::vector<PoseHypothesis> good{good_hypothesis({1, 0, 0}, 4.0)};
   EXPECT_EQ(judged(good, 0, kFullMargin, {1.0, 0.0, 10.0}).status, AlignStatus::kAmbiguous);

@@ -83,6 +83,27 @@ TEST(LinkDoubts, NoneAreLookedForWhereNoneAreWanted) {
   for (std::size_t n = 0; n < before.size(); ++n) EXPECT_THAT(walk.map.map_from_keyframe[n], HasSameBits(before[n]));
 }
 
+TEST(LinkDoubts, WhatAllScansSayIsTheProbabilityOfTheLink) {
+  CutForALoop walk(5.0);
+  EXPECT_FALSE(walk.chain.links[kLink].certainty);
+  walk.revise();
+  ASSERT_TRUE(walk.chain.links[kLink].certainty);
+  EXPECT_GE(*walk.chain.links[kLink].certainty, MappingOptions().link_revision.least_certainty);
+  EXPECT_DOUBLE_EQ(link_probability(walk.chain.links[kLink]), probability_of(*walk.chain.links[kLink].certainty));
+  EXPECT_FALSE(walk.chain.links[kLink - 1].certainty) << "nobody was asked";
+}
+
+TEST(LinkDoubts, WhatIsCertainEnoughIsStillSplitBelowTheProbabilityThatWasAskedFor) {
+  CutForALoop walk(5.0);
+  MappingOptions options;
+  options.chain.threads = 1;
+  options.smoothing.split_below = 1.0 - 1e-9;
+  RunObserver nobody;
+  ASSERT_TRUE(revise_doubtful_links(options, nobody, nullptr, walk.chain, walk.map));
+  EXPECT_EQ(walk.map.link_choice[kLink], kCut);
+  EXPECT_FALSE(walk.chain.links[kLink].certainty);
+}
+
 /// Nothing is ever certain enough here.
 TEST(LinkDoubts, WhatStaysInDoubtSplitsTheMapAndOpensTheLoop) {
   CutForALoop walk(5.0);

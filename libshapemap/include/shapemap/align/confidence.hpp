@@ -9,6 +9,9 @@
 /// What an alignment is worth.
 namespace shapemap {
 
+/// Of a logarithm of odds.
+double probability_of(double log_odds);
+
 /// Probability that `best` is right. `margin` is its score above that of the best other place.
 double match_probability(const PoseHypothesis& best, double margin);
 

@@ -38,8 +38,8 @@ Alignment robust_align(const ScanView& reference, const ScanView& query, const R
 RankedPose ranked_pose(const PoseHypothesis& pose);
 
 /// The verdict on `hypotheses`, in any order, of which number `chosen` is taken; `margin` is what it is better by than
-/// any other place.
+/// any other place. What is known better than by the two scans is the `probability`.
 Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chosen, double margin,
-                 const ConfidenceOptions& options);
+                 const ConfidenceOptions& options, std::optional<double> probability = {});
 
 }  // namespace shapemap

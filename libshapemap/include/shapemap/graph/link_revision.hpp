@@ -47,6 +47,7 @@ struct RevisedMap {
   std::vector<Pose2> map_from_node;
   std::vector<std::size_t> piece_of_node;  ///< pieces that were joined have the number of one of them
   std::vector<int> choice;                 ///< per doubtful link: the candidate that is taken; kCut: none
+  std::vector<double> certainty;           ///< per doubtful link: of that candidate, as logarithm of odds
 };
 
 /// Joins the pieces (nodes with the same `piece_of_node`, right to each other) at the doubtful links, the most certain

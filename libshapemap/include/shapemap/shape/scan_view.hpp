@@ -46,6 +46,9 @@ struct ScanView {
   std::size_t size() const { return points.size(); }
 };
 
+/// Whether there is hardly a direction that the scan does not see.
+bool looks_all_round(const ScanView& view);
+
 /// Never fails: a position without returns has no points.
 ScanView view_of(const Position& position, const ReturnOptions& returns, const PolylineOptions& polylines,
                  const ShapeOptions& shape, const ViewOptions& options);
