@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/graph/place_signature.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -43,9 +44,8 @@ PlaceSignature place_signature(const ScanView& view) {
 }
 
 double likeness(const PlaceSignature& a, const PlaceSignature& b) {
-  float sum = 0.0F;
-  for (std::size_t k = 0; k < kSignatureBins; ++k) sum += a[k] * b[k];
-  return static_cast<double>(sum);
+  using Bins = Eigen::Map<const Eigen::Matrix<float, static_cast<int>(kSignatureBins), 1>>;
+  return static_cast<double>(Bins(a.data()).dot(Bins(b.data())));
 }
 
 std::vector<LikelyPlace> PlaceIndex::most_alike(std::size_t node, std::size_t end, std::size_t count) const {
@@ -54,13 +54,15 @@ std::vector<LikelyPlace> PlaceIndex::most_alike(std::size_t node, std::size_t en
   for (std::size_t other = 0; other < end; ++other) {
     places.push_back({other, likeness(signatures_[node], signatures_[other])});
   }
-  const auto more_alike = [](const LikelyPlace& a, const LikelyPlace& b) {
-    return a.likeness != b.likeness ? a.likeness > b.likeness : a.node < b.node;
+  const auto less_alike = [](const LikelyPlace& a, const LikelyPlace& b) {
+    return a.likeness != b.likeness ? a.likeness < b.likeness : a.node > b.node;
   };
-  std::sort(places.begin(), places.end(), more_alike);
+  std::make_heap(places.begin(), places.end(), less_alike);  // few are needed in order
   std::vector<LikelyPlace> apart;
-  for (const LikelyPlace& place : places) {
-    if (apart.size() == count) break;
+  while (apart.size() < count && !places.empty()) {
+    std::pop_heap(places.begin(), places.end(), less_alike);
+    const LikelyPlace place = places.back();
+    places.pop_back();
     const bool beside = std::any_of(apart.begin(), apart.end(), [&](const LikelyPlace& other) {
       return std::max(place.node, other.node) - std::min(place.node, other.node) <= 1;
     });
