@@ -21,6 +21,14 @@ constexpr double kAgainstChain = 3.0;
 /// Steps that are so many times longer than usual are all alike: pieces that nothing joins lie far apart.
 constexpr double kMostUnusual = 100.0;
 
+/// Two loops between nodes so near to each other, on both sides, tell one story.
+constexpr std::size_t kSameStretch = 12;
+
+bool are_of_same_stretches(const PoseConstraint& one, const PoseConstraint& other) {
+  const auto apart = [](std::size_t a, std::size_t b) { return std::max(a, b) - std::min(a, b); };
+  return apart(one.a, other.a) <= kSameStretch && apart(one.b, other.b) <= kSameStretch;
+}
+
 bool agrees(const Pose2& off) { return is_within(off, kAgrees_m, kAgrees_rad); }
 
 /// The best member of each node.
@@ -167,9 +175,29 @@ double LoopProblem::cost_of_links(const LoopChoice& choice) const {
 void LoopProblem::rate(LoopChoice& choice) {
   choice.value = MapEvidence::kWeight * evidence_.of(choice.map_from_node, rings(choice)) - 0.5 * choice.chi_square -
                  cost_of_links(choice);
+  choice.value += worth_of_loops(choice);
+}
+
+double LoopProblem::worth_of_loops(const LoopChoice& choice) const {
+  std::vector<std::size_t> closed;
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
-    if (choice.accepted[k]) choice.value += worth_in(choice, k);
+    if (choice.accepted[k]) closed.push_back(k);
   }
+  std::vector<PoseConstraint> alike;
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    for (std::size_t j = i + 1; j < closed.size(); ++j) {
+      if (!are_of_same_stretches(best_member(closed[i]), best_member(closed[j]))) continue;
+      alike.push_back({i, j, {}, Eigen::Matrix3d::Identity(), 0.0});
+    }
+  }
+  const std::vector<std::size_t> story = connected_parts(closed.size(), alike);
+  std::vector<double> sums(closed.size(), 0.0);
+  for (std::size_t i = 0; i < closed.size(); ++i) sums[story[i]] += worth_in(choice, closed[i]);
+  double worth = 0.0;
+  for (const double sum : sums) {
+    if (sum > 0.0) worth += options_.trust_cap * (1.0 - std::exp(-sum / options_.trust_cap));
+  }
+  return worth;
 }
 
 Pose2 LoopProblem::off(const LoopChoice& choice, std::size_t cluster) const {

@@ -65,6 +65,9 @@ class LoopProblem {
   /// All links cut, no loop closed.
   LoopChoice undecided(std::vector<Pose2> map_from_node) const;
   double cost_of_links(const LoopChoice& choice) const;
+  /// Of all that are closed. Those between the same two stretches of the way are worth little more than the best of
+  /// them: when the one is wrong since the stretches look alike, so are the others.
+  double worth_of_loops(const LoopChoice& choice) const;
 
   const std::vector<ChainLink>& links_;
   const std::vector<LoopCluster>& clusters_;

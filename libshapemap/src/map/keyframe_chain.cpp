@@ -33,19 +33,22 @@ bool is_same_place(const PoseConstraint& one, const Pose2& other) {
   return off_m.dot(spread.ldlt().solve(off_m)) < kSameDeviations * kSameDeviations;
 }
 
-/// What the choice of a link leads by over all that is another place.
+/// What the choice of a link leads by over all that is another place. Of places that were not found it is only known
+/// that they are no better than the worst that was.
 double margin_to_other_places(const KeyframeChain& chain, std::size_t link) {
-  const std::vector<PoseHypothesis>& hypotheses = chain.links[link].hypotheses;
-  const Choice& choice = chain.links[link].choice;
-  double margin = kFullMargin;
-  if (hypotheses.size() < 2) return margin;
+  const KeyframeLink& of = chain.links[link];
+  const Choice& choice = of.choice;
+  if (of.hypotheses.size() < 2) return kFullMargin;
   const PoseConstraint chosen = link_constraint(chain, link, choice.alternative);
-  for (std::size_t k = 0; k < hypotheses.size(); ++k) {
-    if (k != choice.alternative && !is_same_place(chosen, hypotheses[k].ref_from_query)) {
-      margin = std::min(margin, choice.behind[k]);
+  double to_other = kFullMargin;
+  double to_worst = 0.0;
+  for (std::size_t k = 0; k < of.hypotheses.size(); ++k) {
+    if (k < of.num_own) to_worst = std::max(to_worst, choice.behind[k]);
+    if (k != choice.alternative && !is_same_place(chosen, of.hypotheses[k].ref_from_query)) {
+      to_other = std::min(to_other, choice.behind[k]);
     }
   }
-  return margin;
+  return to_worst > 0.0 ? std::min(to_other, to_worst) : to_other;
 }
 
 }  // namespace

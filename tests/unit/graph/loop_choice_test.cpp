@@ -109,6 +109,27 @@ TEST(LoopChoiceWorth, IsLessByARivalThatTheMapContradicts) {
   EXPECT_NEAR(agreeing.worth_in(agreeing.of_map(ring.truth), 0), 18.0, 1e-9);
 }
 
+/// Two stretches that look alike make any number of loops that are wrong together.
+TEST(LoopChoiceValue, OfLoopsBetweenTheSameStretchesIsAtMostTheCap) {
+  Ring ring;
+  const auto gain_of_second = [&](std::size_t a, std::size_t b) {
+    ring.clusters = {test::cluster_of(ring.truth, 0, kRingLap, 8, 18.0), test::cluster_of(ring.truth, a, b, 4, 12.0)};
+    LoopProblem problem = ring.problem();
+    LoopChoice both = problem.of_map(ring.truth);
+    EXPECT_THAT(both.accepted, ElementsAre(1, 1));
+    LoopChoice one = both;
+    one.accepted[1] = 0;
+    problem.rate(one);
+    problem.rate(both);
+    return both.value - one.value;
+  };
+  const auto worth = [](double sum) { return 20.0 * (1.0 - std::exp(-sum / 20.0)); };
+  EXPECT_NEAR(gain_of_second(4, kRingLap + 4), worth(30.0) - worth(18.0), 1e-6);
+  EXPECT_NEAR(gain_of_second(20, 30), worth(12.0), 1e-6) << "another place";
+  ring.options.trust_cap = 0.0;
+  EXPECT_EQ(gain_of_second(4, kRingLap + 4), 0.0) << "loops count for nothing, and nothing is divided by it";
+}
+
 /// A link of which one alternative fits well is not cut lightly, though it is not sure which.
 TEST(LoopChoiceValue, OfACutLinkIsLessTheBetterOneOfItsAlternativesFits) {
   Ring ring;

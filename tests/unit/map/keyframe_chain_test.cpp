@@ -82,6 +82,17 @@ TEST(ChooseHypotheses, WhatSlidesAlongACorridorIsNoOtherPlace) {
   }
 }
 
+/// All that were found slide along the corridor: of another place it is only known that it is no better than these.
+TEST(ChooseHypotheses, WhatWasNotFoundMayBeAsGoodAsTheWorstThatWas) {
+  KeyframeChain chain = sliding_link();
+  add_alternative({0.8, 0.0, 0.0}, 0.1, chain);
+  add_alternative({-0.8, 0.0, 0.0}, 2.5, chain);
+  chain.links[0].num_own = 3;
+  add_alternative({0.4, 0.0, 0.0}, 9.0, chain);  // by way of a scan further back
+  choose_hypotheses(chain);
+  EXPECT_NEAR(chain.links[0].choice.margin, 2.5, 1e-9);
+}
+
 TEST(ChooseHypotheses, WhereScansHoldThePlaceSlidingIsOne) {
   KeyframeChain chain = sliding_link();
   chain.links[0].hypotheses[0].fit.information(0, 0) = 400.0;

@@ -49,7 +49,9 @@ struct LoopClosingOptions {
           self.assemblies);
     visit(Field{"loop-doubt-below", "a less probable alignment of the chain may be replaced", 0, 1}, self.doubt_below);
     visit(Field{"loop-repairs", "contradictions that are looked into, in each round", 0, 1000}, self.repairs);
-    visit(Field{"loop-trust-cap", "what a loop can weigh at most, as logarithm of odds", 0, 1000}, self.trust_cap);
+    visit(Field{"loop-trust-cap",
+                "what all loops between two stretches of the way can weigh at most, as logarithm of odds", 0, 1000},
+          self.trust_cap);
     visit(Field{"loop-least-gain", "what a change must gain, as logarithm of odds", 0, 1000}, self.least_gain);
     visit(Field{"step-penalty", "against each usual step or turn that a doubtful one is longer", 0, 100},
           self.step_penalty);
