@@ -127,8 +127,8 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
         choices=tuple(CEILINGS),
         nargs="?",
         const="sub-scans",
-        help="judge the most that can be known, instead of a map: what the true poses of all sub-scans say (the "
-        "default), or the best that their beams say to one who knows which beam met which face",
+        help="judge what is known without finding a place, instead of a map: what the true poses of all sub-scans say "
+        "(the default), or what their beams say to one who knows which of them met which upright flat face",
     )
     add("--jobs", type=number(1, 256, int), default=2, metavar="N", help="arenas at the same time (default 2)")
     add("--timeout-s", type=number(1, 86400), default=300.0, metavar="S", help="for one arena (default 300)")

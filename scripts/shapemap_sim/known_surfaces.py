@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The most that scans can tell: all sub-scans laid together by least squares, told which beam met which surface."""
+"""What scans tell to one who knows which beam met which face: all sub-scans laid together by least squares. Round
+things and boards that lean are left out."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-
 from numpy.typing import NDArray
 
 from .poses import Array, rotate

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The most that beams can tell, on arenas where it is known what that is."""
+"""What beams tell to one who knows what they met, on arenas where it is known what that is."""
 
 from __future__ import annotations
 

@@ -17,6 +17,8 @@ double lead_of_first(const std::vector<PoseHypothesis>& hypotheses) {
   return hypotheses.size() > 1 ? hypotheses[0].score - hypotheses[1].score : kFullMargin;
 }
 
+double log_odds_of(double probability) { return std::log(probability / (1.0 - probability)); }
+
 double probability_of(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 
 double match_probability(const PoseHypothesis& best, double margin) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "shapemap/align/confidence.hpp"
+
 namespace shapemap {
 namespace {
 
@@ -156,7 +158,7 @@ double LoopProblem::cost_of_links(const LoopChoice& choice) const {
     if (!link.exists() || link.probability >= options_.doubt_below) continue;
     if (choice.link_choice[i] == kCut) {
       const double p = std::clamp(std::max(link.probability, link.any_probability), 1e-3, 1.0 - 1e-6);
-      cost += std::max(0.0, std::log(p / (1.0 - p)) + kPriorOfLinks);
+      cost += std::max(0.0, log_odds_of(p) + kPriorOfLinks);
     } else {
       const auto taken = static_cast<std::size_t>(choice.link_choice[i]);
       cost += link.alternatives.front().score - link.alternatives[taken].score + (taken == 0 ? 0.0 : kAgainstChain);
@@ -174,8 +176,7 @@ double LoopProblem::cost_of_links(const LoopChoice& choice) const {
 
 void LoopProblem::rate(LoopChoice& choice) {
   choice.value = MapEvidence::kWeight * evidence_.of(choice.map_from_node, rings(choice)) - 0.5 * choice.chi_square -
-                 cost_of_links(choice);
-  choice.value += worth_of_loops(choice);
+                 cost_of_links(choice) + worth_of_loops(choice);
 }
 
 double LoopProblem::worth_of_loops(const LoopChoice& choice) const {

@@ -57,7 +57,7 @@ struct PairSearch {
 /// That the two scans are of one place, and that it is where the alignment says.
 double log_odds_of_place(double probability, const Eigen::Matrix3d& covariance) {
   const double p = std::clamp(probability, 1e-9, 1.0 - 1e-9);
-  return std::log(p / (1.0 - p)) - std::log(std::max(1.0, worst_deviation_m(covariance) / kHeld_m));
+  return log_odds_of(p) - std::log(std::max(1.0, worst_deviation_m(covariance) / kHeld_m));
 }
 
 std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, const PairSearch& search,

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "piece_joints.hpp"
+#include "shapemap/align/confidence.hpp"
 #include "shapemap/graph/pose_graph.hpp"
 #include "usual_motion.hpp"
 
@@ -50,7 +51,7 @@ struct Lead {
 
 double log_odds(double probability) {
   const double p = std::clamp(probability, 1e-6, 1.0 - 1e-6);
-  return std::log(p / (1.0 - p));
+  return log_odds_of(p);
 }
 
 class Assembly {

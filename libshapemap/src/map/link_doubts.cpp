@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "keyframe_store.hpp"
+#include "shapemap/align/confidence.hpp"
 #include "shapemap/align/robust_align.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/graph/link_revision.hpp"
@@ -23,8 +24,6 @@ constexpr double kSureLoop = 18.0;
 /// Of a closed loop.
 const Eigen::Matrix3d kLoopCovariance = Eigen::Vector3d(0.01, 0.01, 0.0012).asDiagonal();
 
-double log_odds(double probability) { return std::log(probability / (1.0 - probability)); }
-
 class LinkDoubts {
  public:
   LinkDoubts(const MappingOptions& options, RunObserver& observer, KeyframeChain& chain, KeyframeMap& map,
@@ -41,7 +40,7 @@ class LinkDoubts {
     for (const bool thoroughly : {false, true}) {
       for (Doubt& doubt : doubts_) add_candidates(doubt, thoroughly);
       settle(std::max(thoroughly ? revision.least_certainty : revision.clear_certainty,
-                      log_odds(options_.smoothing.split_below)));
+                      log_odds_of(options_.smoothing.split_below)));
     }
     for (const Doubt& doubt : doubts_) {
       map_.link_choice[doubt.of_map.link] = kCut;

@@ -9,7 +9,7 @@
 /// What an alignment is worth.
 namespace shapemap {
 
-/// Of a logarithm of odds.
+double log_odds_of(double probability);
 double probability_of(double log_odds);
 
 /// Probability that `best` is right. `margin` is its score above that of the best other place.
