@@ -15,7 +15,7 @@ import numpy as np
 from shapemap_sim.poses import Array, compose, transform
 
 FORMAT, FORMAT_VERSION = "shapemap-trace", 1
-RECORDS = ("run", "position", "alignment", "link", "choice", "result", "end")
+RECORDS = ("run", "position", "alignment", "link", "choice", "revision", "result", "end")
 
 
 @dataclass(frozen=True)

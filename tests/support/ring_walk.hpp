@@ -61,11 +61,10 @@ inline std::vector<Pose2> ring_walk(std::size_t count, unsigned seed, double fro
 
 using Views = std::vector<std::shared_ptr<const ScanView>>;
 
-inline Views views_along(const World& world, const std::vector<Pose2>& poses, unsigned seed = 1) {
+inline Views views_along(const World& world, const std::vector<Pose2>& poses, unsigned seed = 1,
+                         const Scanner& scanner = full_circle()) {
   Views views;
-  for (const Pose2& pose : poses) {
-    views.push_back(std::make_shared<ScanView>(view_from(world, pose, full_circle(), seed++)));
-  }
+  for (const Pose2& pose : poses) views.push_back(std::make_shared<ScanView>(view_from(world, pose, scanner, seed++)));
   return views;
 }
 

@@ -33,6 +33,12 @@ double match_probability(const PoseHypothesis& best, double margin) {
   return probability_of(std::min(log_odds, lead));
 }
 
+double probability_of_neighbours(double match_probability) {
+  constexpr double kLeast = 1e-9;  // the logarithm stays finite
+  // Logistic regression on links of thinned logs that no loop holds: scripts/fit_links.py.
+  return probability_of(3.0 + 0.48 * log_odds_of(std::clamp(match_probability, kLeast, 1.0 - kLeast)));
+}
+
 Eigen::Matrix3d pose_covariance(const LineFit& fit, const LineNoise& noise) {
   // Angles are scaled to the metres that they move a point by, so that all eigenvalues compare.
   const double lever_m = std::max(fit.lever_m, 0.1);

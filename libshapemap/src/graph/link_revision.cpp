@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 #include "shapemap/core/parallel_for.hpp"
 #include "shapemap/graph/loop_closing.hpp"
 #include "shapemap/graph/map_evidence.hpp"
+#include "shapemap/graph/pose_graph.hpp"
 
 namespace shapemap {
 namespace {
@@ -19,29 +20,58 @@ constexpr std::size_t kWindow = 16;
 /// Poses are as exact as a chain makes them.
 constexpr double kSlack = 1.3;
 
-/// However badly two scans go together by themselves, the others may know better.
-constexpr double kLeastScore = -8.0;
-
-/// Candidates nearer than this are the same, and no rivals.
+/// Candidates nearer than this are the same.
 constexpr double kSame_m = 0.40;
 constexpr double kSame_rad = 8 * kDegree;
 
-/// The right place may be none of the candidates: the best is then better than the others, and still bad. That it is
-/// good makes it no more certain: of two that fit alike, each is right half of the time.
-constexpr double kShareOfValue = 0.5;
+/// What slides no farther is right enough to be joined.
+constexpr double kSlides_m = 1.0;
 
-/// Of rivals that are worse still, no more is made: the best of many bad ones may be far ahead.
-constexpr double kFullLead = 10.0;
+/// What a candidate is worth, as logarithm of odds: a multinomial logit, fitted to doubtful links of thinned real logs
+/// and of simulated arenas by scripts/fit_links.py.
+constexpr double kPerScore = 0.63;
+constexpr double kLeastScore = -12.0;  ///< however badly two scans go together by themselves, others may know better
+constexpr double kByOthers = 2.9;
+constexpr double kOfMap = 1.2;  ///< the whole map was asked already
+constexpr double kNoneOfThem = -5.6;
+
+double worth(const DoubtfulLink& doubt, std::size_t k, const Balance& said_by_others) {
+  return kPerScore * std::max(kLeastScore, doubt.candidates[k].score) + kByOthers * said_by_others.value() +
+         (k == 0 ? kOfMap : 0.0);
+}
 
 bool is_same(const Pose2& a, const Pose2& b) {
   return (a.translation() - b.translation()).norm() < kSame_m && angle_between(a.theta_rad, b.theta_rad) < kSame_rad;
 }
 
-struct Verdict {
-  int best = kCut;
-  double value = -std::numeric_limits<double>::infinity();
-  double certainty = 0.0;
-};
+/// Whether nothing holds `other` apart from the candidate `one`, which slides along a corridor.
+bool slides_to(const DoubtfulLink::Candidate& one, const Pose2& other) {
+  return (one.a_from_b.translation() - other.translation()).norm() < kSlides_m &&
+         is_same_place({0, 0, one.a_from_b, one.covariance, 0.0}, other);
+}
+
+/// The best candidate by their `worths`, against all others, and none of them. Where nothing holds it along a corridor,
+/// it is right if any is that it may slide to.
+RevisedLink verdict_by(const std::vector<double>& worths, const std::vector<DoubtfulLink::Candidate>& candidates) {
+  std::vector<std::size_t> order(worths.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t j, std::size_t k) { return worths[j] > worths[k]; });
+  const DoubtfulLink::Candidate& best = candidates[order.front()];
+  double right = 0.0;
+  double all = std::exp(kNoneOfThem - worths[order.front()]);
+  std::vector<Pose2> places;
+  for (const std::size_t k : order) {
+    const Pose2& pose = candidates[k].a_from_b;
+    if (std::any_of(places.begin(), places.end(), [&](const Pose2& place) { return is_same(place, pose); })) continue;
+    places.push_back(pose);
+    const double odds = std::exp(worths[k] - worths[order.front()]);
+    all += odds;
+    if (is_same(best.a_from_b, pose) || slides_to(best, pose)) right += odds;
+  }
+  // The map has aligned its own to more than these two.
+  const std::size_t taken = is_same(best.a_from_b, candidates[0].a_from_b) ? 0 : order.front();
+  return {taken, right / all, false, {}};
+}
 
 class Revision {
  public:
@@ -53,24 +83,14 @@ class Revision {
         visibility_(visibility),
         threads_(threads) {}
 
-  Verdict judge(const DoubtfulLink& doubt) const {
-    std::vector<double> values(doubt.candidates.size());
-    parallel_for(values.size(), threads_, [&](std::size_t k) {
-      const DoubtfulLink::Candidate& candidate = doubt.candidates[k];
-      values[k] = std::max(kLeastScore, candidate.score) + evidence(doubt.link, candidate.a_from_b);
-    });
-    Verdict verdict;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      if (values[k] <= verdict.value) continue;
-      verdict.best = static_cast<int>(k);
-      verdict.value = values[k];
-    }
-    double second = verdict.value - kFullLead;
-    const Pose2& best = doubt.candidates[static_cast<std::size_t>(verdict.best)].a_from_b;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      if (!is_same(doubt.candidates[k].a_from_b, best)) second = std::max(second, values[k]);
-    }
-    verdict.certainty = verdict.value - second + std::min(0.0, kShareOfValue * verdict.value);
+  RevisedLink judge(const DoubtfulLink& doubt) const {
+    std::vector<Balance> balances(doubt.candidates.size());
+    parallel_for(balances.size(), threads_,
+                 [&](std::size_t k) { balances[k] = said_by_others(doubt.link, doubt.candidates[k].a_from_b); });
+    std::vector<double> worths;
+    for (std::size_t k = 0; k < balances.size(); ++k) worths.push_back(worth(doubt, k, balances[k]));
+    RevisedLink verdict = verdict_by(worths, doubt.candidates);
+    verdict.said_by_others = std::move(balances);
     return verdict;
   }
 
@@ -96,22 +116,23 @@ class Revision {
     return poses_[link] * a_from_b * inverse(poses_[link + 1]);
   }
 
-  /// Of all pairs of scans of the two pieces that a link joins.
-  double evidence(std::size_t link, const Pose2& a_from_b) const {
+  /// By all pairs of scans of the two pieces that a link joins, but for the two of the link.
+  Balance said_by_others(std::size_t link, const Pose2& a_from_b) const {
     const Pose2 move = moved_by(link, a_from_b);
     const std::size_t first = link + 1 - std::min(kWindow, link + 1);
     const std::size_t last = std::min(poses_.size(), link + 1 + kWindow);
-    double sum = 0.0;
+    Balance balance;
     for (std::size_t a = first; a < last; ++a) {
       if (piece_[a] != piece_[link]) continue;
       for (std::size_t b = first; b < last; ++b) {
-        if (piece_[b] != piece_[link + 1]) continue;
+        if (piece_[b] != piece_[link + 1] || (a == link && b == link + 1)) continue;
         const Pose2 near_from_far = inverse(poses_[a]) * (move * poses_[b]);
         if (near_from_far.translation().norm() > kWithin_m) continue;
-        sum += MapEvidence::of_pair(shapemap::visibility(*views_[a], *views_[b], near_from_far, visibility_, kSlack));
+        balance.add(
+            MapEvidence::of_pair(shapemap::visibility(*views_[a], *views_[b], near_from_far, visibility_, kSlack)));
       }
     }
-    return sum;
+    return balance;
   }
 
   const NodeViews& views_;
@@ -125,28 +146,26 @@ class Revision {
 
 RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node,
                         std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulLink>& doubtful,
-                        const VisibilityOptions& visibility, double least_certainty, int threads,
+                        const VisibilityOptions& visibility, double least_probability, int threads,
                         RunObserver& observer) {
   Revision revision(views, std::move(map_from_node), std::move(piece_of_node), visibility, threads);
   RevisedMap result;
-  result.choice.assign(doubtful.size(), kCut);
-  result.certainty.assign(doubtful.size(), 0.0);
-  std::vector<Verdict> verdicts(doubtful.size());
+  std::vector<RevisedLink>& links = result.links;
+  links.resize(doubtful.size());
   std::vector<char> is_stale(doubtful.size(), 1);
   while (observer.keep_going()) {
     std::size_t next = doubtful.size();
     for (std::size_t d = 0; d < doubtful.size(); ++d) {
-      if (result.choice[d] != kCut) continue;
-      if (is_stale[d]) verdicts[d] = revision.judge(doubtful[d]);
+      if (links[d].joins) continue;
+      if (is_stale[d]) links[d] = revision.judge(doubtful[d]);
       is_stale[d] = 0;
-      if (verdicts[d].certainty < least_certainty) continue;
-      if (next == doubtful.size() || verdicts[d].certainty > verdicts[next].certainty) next = d;
+      if (links[d].probability < least_probability) continue;
+      if (next == doubtful.size() || links[d].probability > links[next].probability) next = d;
     }
     if (next == doubtful.size()) break;
     const std::size_t link = doubtful[next].link;
-    result.choice[next] = verdicts[next].best;
-    result.certainty[next] = verdicts[next].certainty;
-    revision.join(link, doubtful[next].candidates[static_cast<std::size_t>(verdicts[next].best)].a_from_b);
+    links[next].joins = true;
+    revision.join(link, doubtful[next].candidates[links[next].candidate].a_from_b);
     for (std::size_t d = 0; d < doubtful.size(); ++d) {
       const std::size_t joined = revision.piece_of(link);
       if (revision.piece_of(doubtful[d].link) == joined || revision.piece_of(doubtful[d].link + 1) == joined) {
@@ -156,8 +175,8 @@ RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node
   }
   if (!observer.keep_going()) {
     for (std::size_t d = 0; d < doubtful.size(); ++d) {
-      if (result.choice[d] != kCut) continue;
-      result.choice[d] = 0;
+      if (links[d].joins) continue;
+      links[d] = {0, 0.0, true, {}};
       revision.join(doubtful[d].link, doubtful[d].candidates.front().a_from_b);
     }
   }

@@ -39,6 +39,8 @@ void TraceFile::on_link(const TracedLink& link) { write_line(link_json(link), *s
 
 void TraceFile::on_choice(const TracedChoice& choice) { write_line(choice_json(choice), *sink_); }
 
+void TraceFile::on_revision(const TracedRevision& revision) { write_line(revision_json(revision), *sink_); }
+
 void TraceFile::commit(const MapResult& result) {
   // Where each position stands in its fragment: both are in the order of the log.
   std::vector<std::size_t> next_of_fragment(result.fragments.size(), 0);

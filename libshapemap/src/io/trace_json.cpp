@@ -101,6 +101,15 @@ void add_best_rotation(const TracedAlignment& alignment, LcsTarget target, Json&
   all["kept"] = names(best.translation.kept);
 }
 
+Json hypotheses_json(const std::vector<PoseHypothesis>& hypotheses) {
+  Json all = Json::array();
+  for (const PoseHypothesis& hypothesis : hypotheses) {
+    all.push_back(ranked_json(ranked_pose(hypothesis)));
+    all.back()["covariance"] = covariance_json(pose_covariance(hypothesis.fit));
+  }
+  return all;
+}
+
 }  // namespace
 
 Json run_json(const TracedRun& run) {
@@ -169,16 +178,11 @@ Json alignment_json(const TracedAlignment& alignment, LcsTarget target) {
 }
 
 Json link_json(const TracedLink& link) {
-  Json hypotheses = Json::array();
-  for (const PoseHypothesis& hypothesis : link.hypotheses) {
-    hypotheses.push_back(ranked_json(ranked_pose(hypothesis)));
-    hypotheses.back()["covariance"] = covariance_json(pose_covariance(hypothesis.fit));
-  }
   return {{"record", "link"},
           {"reference", link.reference_index},
           {"query", link.query_index},
           {"num_own", link.num_own},
-          {"hypotheses", hypotheses}};
+          {"hypotheses", hypotheses_json(link.hypotheses)}};
 }
 
 Json choice_json(const TracedChoice& choice) {
@@ -187,6 +191,21 @@ Json choice_json(const TracedChoice& choice) {
           {"query", choice.query_index},
           {"alternative", choice.alternative},
           {"margin", choice.margin}};
+}
+
+Json revision_json(const TracedRevision& revision) {
+  Json hypotheses = hypotheses_json(revision.hypotheses);
+  for (std::size_t k = 0; k < revision.said_by_others.size(); ++k) {
+    hypotheses[k]["for_it"] = revision.said_by_others[k].for_it;
+    hypotheses[k]["against_it"] = revision.said_by_others[k].against_it;
+  }
+  return {{"record", "revision"},
+          {"reference", revision.reference_index},
+          {"query", revision.query_index},
+          {"hypotheses", hypotheses},
+          {"in_map", revision.in_map},
+          {"alternative", revision.alternative},
+          {"probability", revision.probability}};
 }
 
 Json result_json(const PositionResult& position, const PlacedPosition* placed) {

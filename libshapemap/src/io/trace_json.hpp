@@ -15,6 +15,7 @@ Json position_json(const TracedRun& run, std::size_t position_index, const std::
 Json alignment_json(const TracedAlignment& alignment, LcsTarget target);
 Json link_json(const TracedLink& link);
 Json choice_json(const TracedChoice& choice);
+Json revision_json(const TracedRevision& revision);
 
 /// `placed` is null for a position that is in no fragment.
 Json result_json(const PositionResult& position, const PlacedPosition* placed);

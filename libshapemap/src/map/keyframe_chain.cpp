@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "keyframe_chain.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 
@@ -18,19 +17,6 @@ Eigen::Matrix3d with_usual_motion(const Eigen::Matrix3d& covariance, bool is_exp
   const Eigen::Matrix3d motion = usual.cwiseAbs2().asDiagonal();
   const Eigen::Matrix3d both = motion * (motion + covariance).inverse() * covariance;
   return 0.5 * (both + both.transpose());
-}
-
-/// Poses so near to each other are one, as far as the scans and what is usual hold them.
-constexpr double kSamePlace_m = 0.1;
-constexpr double kSameHeading_rad = 10 * kDegree;
-constexpr double kSameDeviations = 3.0;
-
-bool is_same_place(const PoseConstraint& one, const Pose2& other) {
-  if (angle_between(one.a_from_b.theta_rad, other.theta_rad) > kSameHeading_rad) return false;
-  const Point2 off_m = other.translation() - one.a_from_b.translation();
-  const Eigen::Matrix2d spread =
-      one.covariance.topLeftCorner<2, 2>() + kSamePlace_m * kSamePlace_m * Eigen::Matrix2d::Identity();
-  return off_m.dot(spread.ldlt().solve(off_m)) < kSameDeviations * kSameDeviations;
 }
 
 /// What the choice of a link leads by over all that is another place. Of places that were not found it is only known
@@ -64,8 +50,13 @@ PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std
 double link_probability(const KeyframeLink& link) {
   if (link.settled_covariance) return 1.0;
   if (link.hypotheses.empty()) return 0.0;
-  if (link.certainty) return probability_of(*link.certainty);
   return match_probability(link.hypotheses[link.choice.alternative], link.choice.margin);
+}
+
+double stated_probability(const KeyframeLink& link) {
+  if (link.revised) return link.revised->probability;
+  if (link.settled_covariance || link.hypotheses.empty()) return link_probability(link);
+  return probability_of_neighbours(link_probability(link));
 }
 
 MotionHabit motion_habit(const KeyframeChain& chain) {

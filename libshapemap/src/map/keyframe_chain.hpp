@@ -9,6 +9,7 @@
 #include "chain_smoothing.hpp"
 #include "shapemap/align/pose_hypothesis.hpp"
 #include "shapemap/align/robust_align.hpp"
+#include "shapemap/graph/link_revision.hpp"
 #include "shapemap/graph/pose_graph.hpp"
 
 namespace shapemap {
@@ -35,6 +36,15 @@ struct AttachedScan {
   PoseHypothesis pose;  ///< in the frame of the keyframe
 };
 
+/// What all scans of both sides say of a link that was in doubt: see revise_doubtful_links().
+struct RevisedChoice {
+  std::size_t hypothesis = 0;  ///< the best
+  double probability = 0.0;    ///< that it is right
+  std::size_t in_map = 0;      ///< the hypothesis that the map had until then
+  /// Of each hypothesis; empty when nobody was asked any more.
+  std::vector<Balance> said_by_others;
+};
+
 /// What a keyframe may be to the one before it, and which of it the scans around choose.
 struct KeyframeLink {
   std::vector<PoseHypothesis> hypotheses;  ///< none: another log starts here, or nothing fits
@@ -42,9 +52,7 @@ struct KeyframeLink {
   std::size_t num_own = 0;   ///< so many, the first, are the best first; the rest is by way of scans further back
   bool is_complete = false;  ///< nothing more will be looked for until all is known
   Choice choice;
-  std::size_t num_of_chain = 0;  ///< where the link was revised: the hypotheses before that, which come first
-  /// That the map has it right, as logarithm of odds, by what all scans of both sides say: see revise_doubtful_links().
-  std::optional<double> certainty;
+  std::optional<RevisedChoice> revised;
   /// Keyframes between the two were retired, see retire_keyframes(): there is one hypothesis, which is that of the map
   /// and certain, and this is its covariance.
   std::optional<Eigen::Matrix3d> settled_covariance;
@@ -61,8 +69,11 @@ struct KeyframeChain {
 /// must not shrink because its scans slide.
 PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std::size_t k);
 
-/// Of the place that the chain chose, or, where all scans of both sides were asked, of that which they chose.
+/// match_probability() of the place that the chain chose; 1 where nothing is asked any more, 0 where there is none.
 double link_probability(const KeyframeLink& link);
+
+/// That the link is right, by all that is known but loops: what is stated in the end.
+double stated_probability(const KeyframeLink& link);
 
 /// By the motions that are as good as certain, and that the scans hold in every direction.
 MotionHabit motion_habit(const KeyframeChain& chain);

@@ -19,10 +19,9 @@ constexpr double kTrusted = 0.5;
 constexpr std::size_t kMembersKept = 3;
 constexpr double kLoopLoss = 2.0;
 
-/// Fills in what hangs together, and by what. Improbable links that alone hold what comes after them are cut, unless
-/// they are judged later.
-void find_parts(const KeyframeChain& chain, const std::vector<PoseConstraint>& loops, const MappingOptions& options,
-                KeyframeMap& map) {
+/// Fills in what hangs together, and by what.
+void find_parts(const KeyframeChain& chain, const std::vector<PoseConstraint>& loops, Improbable improbable,
+                const MappingOptions& options, KeyframeMap& map) {
   const std::size_t count = chain.keyframes.size();
   map.held_by_loops.assign(chain.links.size(), false);
   std::vector<PoseConstraint> constraints = link_constraints(chain, map.link_choice);
@@ -33,8 +32,8 @@ void find_parts(const KeyframeChain& chain, const std::vector<PoseConstraint>& l
     if (map.link_choice[i] == kCut) continue;
     const bool alone = lone[next++];
     map.held_by_loops[i] = !alone;
-    if (!alone || is_judged_by_all_scans(chain, i, options)) continue;
-    if (link_probability(chain.links[i]) < options.smoothing.split_below) map.link_choice[i] = kCut;
+    if (!alone || improbable == Improbable::kStays) continue;
+    if (stated_probability(chain.links[i]) < options.smoothing.split_below) map.link_choice[i] = kCut;
   }
   constraints = link_constraints(chain, map.link_choice);
   constraints.insert(constraints.end(), loops.begin(), loops.end());
@@ -89,11 +88,6 @@ std::vector<PoseConstraint> link_constraints(const KeyframeChain& chain, const s
   return constraints;
 }
 
-bool is_judged_by_all_scans(const KeyframeChain& chain, std::size_t link, const MappingOptions& options) {
-  return options.loops.close_loops && options.link_revision.doubt_below > 0.0 &&
-         looks_all_round(*chain.keyframes[link].view) && looks_all_round(*chain.keyframes[link + 1].view);
-}
-
 KeyframeMap map_of_chain(const KeyframeChain& chain, const MappingOptions& options) {
   KeyframeMap map;
   map.map_from_keyframe.resize(chain.keyframes.size());
@@ -103,11 +97,11 @@ KeyframeMap map_of_chain(const KeyframeChain& chain, const MappingOptions& optio
     if (link.hypotheses.empty()) continue;
     map.map_from_keyframe[i + 1] = map.map_from_keyframe[i] * link.hypotheses[link.choice.alternative].ref_from_query;
   }
-  find_parts(chain, {}, options, map);
+  find_parts(chain, {}, Improbable::kIsCut, options, map);
   return map;
 }
 
-KeyframeMap map_with_loops(const KeyframeChain& chain, const std::vector<LoopHypothesis>& found,
+KeyframeMap map_with_loops(const KeyframeChain& chain, const std::vector<LoopHypothesis>& found, Improbable improbable,
                            const MappingOptions& options, RunObserver& observer) {
   observer.on_stage("whole map");
   KeyframeMap map = map_of_chain(chain, options);
@@ -124,7 +118,7 @@ KeyframeMap map_with_loops(const KeyframeChain& chain, const std::vector<LoopHyp
         rank == kCut ? kCut : static_cast<int>(ranked_hypothesis(chain.links[i], static_cast<std::size_t>(rank)));
   }
   const std::vector<PoseConstraint> loops = loop_constraints(clusters, solution.accepted);
-  find_parts(chain, loops, options, map);
+  find_parts(chain, loops, improbable, options, map);
   map.constraints = link_constraints(chain, map.link_choice);
   map.constraints.insert(map.constraints.end(), loops.begin(), loops.end());
   RefinedMap refined = refine_map(views, solution.map_from_node, map.constraints, options.robust.search,

@@ -25,17 +25,18 @@ struct KeyframeMap {
 /// What the links say by the hypotheses that are chosen, but for those that are cut.
 std::vector<PoseConstraint> link_constraints(const KeyframeChain& chain, const std::vector<int>& link_choice);
 
-/// Whether all scans of both sides decide on a doubtful link in the end, see revise_doubtful_links(), and not its own
-/// probability. What a position does not see tells of no wall that is looked through: of scans that look one way, those
-/// of two different corridors go together well enough. So only positions that look all round are judged.
-bool is_judged_by_all_scans(const KeyframeChain& chain, std::size_t link, const MappingOptions& options);
+/// What becomes of a link that is improbable by itself, and alone holds what comes after it.
+enum class Improbable {
+  kIsCut,
+  kStays,  ///< all scans of both sides will judge it: revise_doubtful_links()
+};
 
-/// The chain as it is: errors add up.
+/// The chain as it is: errors add up. Improbable links are cut.
 KeyframeMap map_of_chain(const KeyframeChain& chain, const MappingOptions& options);
 
 /// The chain with its loops closed, and all scans aligned to all that see the same. When the observer asks to stop,
 /// with the loops that are closed by then.
 KeyframeMap map_with_loops(const KeyframeChain& chain, const std::vector<LoopHypothesis>& hypotheses,
-                           const MappingOptions& options, RunObserver& observer);
+                           Improbable improbable, const MappingOptions& options, RunObserver& observer);
 
 }  // namespace shapemap

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "keyframe_store.hpp"
-#include "shapemap/align/confidence.hpp"
 #include "shapemap/align/robust_align.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/graph/link_revision.hpp"
@@ -36,11 +35,12 @@ class LinkDoubts {
     poses_ = map_.map_from_keyframe;
     find();
     if (doubts_.empty()) return false;
+    habit_ = motion_habit(chain_);
     const LinkRevisionOptions& revision = options_.link_revision;
+    const double least = options_.smoothing.split_below;
     for (const bool thoroughly : {false, true}) {
       for (Doubt& doubt : doubts_) add_candidates(doubt, thoroughly);
-      settle(std::max(thoroughly ? revision.least_certainty : revision.clear_certainty,
-                      log_odds_of(options_.smoothing.split_below)));
+      settle(thoroughly ? least : std::max(least, revision.clear_above));
     }
     for (const Doubt& doubt : doubts_) {
       map_.link_choice[doubt.of_map.link] = kCut;
@@ -60,28 +60,38 @@ class LinkDoubts {
  private:
   struct Doubt {
     DoubtfulLink of_map;
-    std::size_t in_map;           ///< which of the link's hypotheses
-    std::vector<int> hypotheses;  ///< per candidate: which of the link's
+    std::size_t in_map;                   ///< which of the link's hypotheses
+    std::vector<std::size_t> hypotheses;  ///< per candidate: which of the link's
   };
 
   /// Joins what is certain by the candidates that there are; the rest stays in doubt.
-  void settle(double least_certainty) {
+  void settle(double least_probability) {
     std::vector<DoubtfulLink> doubtful;
     for (const Doubt& doubt : doubts_) doubtful.push_back(doubt.of_map);
     RevisedMap revised = revise_links(views_, poses_, piece_, doubtful, options_.robust.search.visibility,
-                                      least_certainty, options_.chain.threads, observer_);
+                                      least_probability, options_.chain.threads, observer_);
     poses_ = std::move(revised.map_from_node);
     piece_ = std::move(revised.piece_of_node);
     std::vector<Doubt> rest;
     for (std::size_t d = 0; d < doubts_.size(); ++d) {
-      const int choice = revised.choice[d];
-      if (choice == kCut) {
-        rest.push_back(std::move(doubts_[d]));
+      const RevisedLink& link = revised.links[d];
+      const std::size_t hypothesis = doubts_[d].hypotheses[link.candidate];
+      chain_.links[doubts_[d].of_map.link].revised = {hypothesis, link.probability, doubts_[d].in_map,
+                                                      by_hypothesis(doubts_[d], link.said_by_others)};
+      if (link.joins) {
+        take(doubts_[d].of_map.link, static_cast<int>(hypothesis));
       } else {
-        take(doubts_[d].of_map.link, doubts_[d].hypotheses[static_cast<std::size_t>(choice)], revised.certainty[d]);
+        rest.push_back(std::move(doubts_[d]));
       }
     }
     doubts_ = std::move(rest);
+  }
+
+  /// Candidates are all hypotheses, that of the map first.
+  static std::vector<Balance> by_hypothesis(const Doubt& doubt, const std::vector<Balance>& by_candidate) {
+    std::vector<Balance> balances(by_candidate.size());
+    for (std::size_t c = 0; c < by_candidate.size(); ++c) balances[doubt.hypotheses[c]] = by_candidate[c];
+    return balances;
   }
 
   /// Links that join pieces which neither sure links nor sure loops do, whether the map takes them or cuts them.
@@ -98,7 +108,6 @@ class LinkDoubts {
     piece_ = connected_parts(views_.size(), sure);
     for (const std::size_t i : doubtful) {
       if (piece_[i] == piece_[i + 1]) continue;
-      chain_.links[i].num_of_chain = chain_.links[i].hypotheses.size();
       doubts_.push_back({{i, {}}, hypothesis_in_map(i), {}});
     }
   }
@@ -111,8 +120,7 @@ class LinkDoubts {
   /// A link that is cut where loops hold both sides is as doubtful as one that is improbable: so are the loops.
   bool is_doubtful(std::size_t i) const {
     if (map_.component[i] != map_.component[i + 1] || chain_.links[i].hypotheses.empty()) return false;
-    if (!is_judged_by_all_scans(chain_, i, options_)) return false;
-    const double chance = map_.link_choice[i] == kCut ? 0.0 : link_probability(chain_.links[i]);
+    const double chance = map_.link_choice[i] == kCut ? 0.0 : stated_probability(chain_.links[i]);
     return chance < std::max(options_.link_revision.doubt_below, options_.smoothing.split_below);
   }
 
@@ -153,12 +161,13 @@ class LinkDoubts {
     } else if (link_probability(link) < options_.loop_search.bridge_below) {
       add_bridges(i);
     }
-    doubt.hypotheses = {static_cast<int>(doubt.in_map)};
-    doubt.of_map.candidates = {{in_map(i), link.hypotheses[doubt.in_map].score}};
+    doubt.hypotheses = {doubt.in_map};
+    const auto covariance = [&](std::size_t k) { return link_constraint(chain_, i, k).covariance; };
+    doubt.of_map.candidates = {{in_map(i), link.hypotheses[doubt.in_map].score, covariance(doubt.in_map)}};
     for (std::size_t k = 0; k < link.hypotheses.size(); ++k) {
       if (k == doubt.in_map) continue;
-      doubt.hypotheses.push_back(static_cast<int>(k));
-      doubt.of_map.candidates.push_back({link.hypotheses[k].ref_from_query, link.hypotheses[k].score});
+      doubt.hypotheses.push_back(k);
+      doubt.of_map.candidates.push_back({link.hypotheses[k].ref_from_query, link.hypotheses[k].score, covariance(k)});
     }
   }
 
@@ -181,7 +190,6 @@ class LinkDoubts {
 
   /// What scans before and after a link say of each other is carried to the link by way of the map.
   void add_bridges(std::size_t i) {
-    std::vector<PoseHypothesis>& known = chain_.links[i].hypotheses;
     const std::vector<Pose2>& poses = map_.map_from_keyframe;
     for (const LoopHypothesis& bridge :
          bridges(views_, {i}, options_.robust.search, options_.chain.threads, observer_, store_)) {
@@ -190,7 +198,7 @@ class LinkDoubts {
       if (a_from_b.translation().norm() > max_shift_m(*views_[i], *views_[i + 1], options_.robust.search.voting)) {
         continue;
       }
-      add_if_new(refined_hypothesis(*views_[i], *views_[i + 1], a_from_b, options_.robust.search), known);
+      add(i, refined_hypothesis(*views_[i], *views_[i + 1], a_from_b, options_.robust.search));
     }
   }
 
@@ -201,13 +209,16 @@ class LinkDoubts {
     search.hypotheses.rotation_peaks *= kMoreEffort;
     search.hypotheses.refined *= kMoreEffort;
     search.hypotheses.kept *= kMoreEffort;
-    for (const PoseHypothesis& pose : pose_hypotheses(*views_[i], *views_[i + 1], search)) {
-      add_if_new(pose, chain_.links[i].hypotheses);
-    }
+    for (const PoseHypothesis& pose : pose_hypotheses(*views_[i], *views_[i + 1], search)) add(i, pose);
   }
 
-  void take(std::size_t link, int hypothesis, double certainty) {
-    chain_.links[link].certainty = certainty;
+  /// What is unusual scores less, as in the chain.
+  void add(std::size_t i, PoseHypothesis pose) {
+    if (!chain_.keyframes[i + 1].expected) pose.score -= habit_.surprise(pose.ref_from_query);
+    add_if_new(pose, chain_.links[i].hypotheses);
+  }
+
+  void take(std::size_t link, int hypothesis) {
     if (map_.link_choice[link] == hypothesis) return;
     map_.link_choice[link] = hypothesis;
     changed_ = true;
@@ -241,6 +252,7 @@ class LinkDoubts {
   AlignmentStore* store_;
   NodeViews views_;
   std::vector<Doubt> doubts_;
+  MotionHabit habit_;
   std::vector<Pose2> poses_;        ///< of the pieces, as far as they are joined
   std::vector<std::size_t> piece_;  ///< of each node
   bool changed_ = false;
@@ -250,6 +262,7 @@ class LinkDoubts {
 
 bool revise_doubtful_links(const MappingOptions& options, RunObserver& observer, AlignmentStore* store,
                            KeyframeChain& chain, KeyframeMap& map) {
+  if (options.link_revision.doubt_below <= 0.0) return false;
   std::optional<KeyframeStore> of_keyframes;
   if (store) of_keyframes.emplace(chain, *store);
   try {

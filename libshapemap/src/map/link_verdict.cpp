@@ -15,13 +15,18 @@ void judge_link(const Log& log, const KeyframeChain& chain, const KeyframeMap& m
   outcome.reference = before;
   const std::vector<PoseHypothesis>& hypotheses = chain.links[link].hypotheses;
   const Choice& choice = chain.links[link].choice;
+  const std::optional<RevisedChoice>& revised = chain.links[link].revised;
   const bool is_cut = map.link_choice[link] == kCut;
-  const std::size_t taken = is_cut ? choice.alternative : static_cast<std::size_t>(map.link_choice[link]);
+  const std::size_t best = revised ? revised->hypothesis : choice.alternative;
+  const std::size_t taken = is_cut ? best : static_cast<std::size_t>(map.link_choice[link]);
   const bool is_first_choice = taken == choice.alternative;
   double margin = choice.margin;
   if (!is_first_choice) margin = hypotheses[taken].score - hypotheses[choice.alternative].score;
   std::optional<double> probability;
-  if (chain.links[link].certainty) probability = probability_of(*chain.links[link].certainty);
+  if (!hypotheses.empty()) {
+    probability =
+        revised ? revised->probability : probability_of_neighbours(match_probability(hypotheses[taken], margin));
+  }
   outcome.alignment = judged(hypotheses, taken, margin, options, probability);
   outcome.reason = outcome.alignment.reason;
   if (is_cut && !hypotheses.empty() && outcome.reason.empty()) {

@@ -148,7 +148,7 @@ class Reading {
   bool settle() {
     find_loops(chain(), chain().keyframes.size() - kKeyframesInUse, options_, observer_, store_, known_);
     if (!observer_.keep_going()) return false;
-    KeyframeMap map = map_with_loops(chain(), known_.hypotheses, options_, observer_);
+    KeyframeMap map = map_with_loops(chain(), known_.hypotheses, Improbable::kIsCut, options_, observer_);
     if (!observer_.keep_going()) return false;
     const StandIns stand_ins = find_stand_ins(log_, chain(), map, options_);
     if (!stand_ins.are_of_right_map()) return false;
@@ -197,13 +197,13 @@ class Reading {
   LoopKnowledge known_;
 };
 
-/// Links that were revised have more to choose from than when they were made.
 void trace_revised(const KeyframeChain& chain, TraceSink& sink) {
   for (std::size_t i = 0; i < chain.links.size(); ++i) {
     const KeyframeLink& link = chain.links[i];
-    if (link.num_of_chain == 0 || link.num_of_chain == link.hypotheses.size()) continue;
-    sink.on_link(
-        {chain.keyframes[i].position_index, chain.keyframes[i + 1].position_index, link.hypotheses, link.num_of_chain});
+    if (!link.revised) continue;
+    sink.on_revision({chain.keyframes[i].position_index, chain.keyframes[i + 1].position_index, link.hypotheses,
+                      link.revised->said_by_others, link.revised->in_map, link.revised->hypothesis,
+                      link.revised->probability});
   }
 }
 
@@ -221,7 +221,8 @@ void map_robustly(const Log& log, const MappingOptions& options, RunObserver& ob
   KeyframeMap map;
   if (options.loops.close_loops) {
     find_loops(chain, chain.keyframes.size(), options, unless_interrupted(), store, reading.known());
-    map = map_with_loops(chain, reading.known().hypotheses, options, unless_interrupted());
+    const Improbable improbable = options.link_revision.doubt_below > 0.0 ? Improbable::kStays : Improbable::kIsCut;
+    map = map_with_loops(chain, reading.known().hypotheses, improbable, options, unless_interrupted());
   } else {
     map = map_of_chain(chain, options);
   }

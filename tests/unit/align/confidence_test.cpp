@@ -131,5 +131,21 @@ TEST(MatchProbability, TellsAClearWinnerFromATie) {
   EXPECT_LT(match_probability(hypothesis(-10.0, 0.1), 0.0), 0.3);
 }
 
+TEST(ProbabilityOfNeighbours, RisesAndStaysAProbability) {
+  double before = 0.0;
+  for (int k = 0; k <= 100; ++k) {
+    const double probability = probability_of_neighbours(k / 100.0);
+    EXPECT_GT(probability, before) << k;
+    EXPECT_LT(probability, 1.0) << k;
+    before = probability;
+  }
+}
+
+TEST(ProbabilityOfNeighbours, TrustsWhatMayAsWellBeOfTwoPlaces) {
+  EXPECT_GT(probability_of_neighbours(0.5), 0.9);
+  EXPECT_GT(probability_of_neighbours(0.01), 0.5);
+  EXPECT_LT(probability_of_neighbours(1e-6), 0.1);
+}
+
 }  // namespace
 }  // namespace shapemap

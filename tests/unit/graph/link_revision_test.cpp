@@ -38,9 +38,9 @@ struct Torn {
 
   Pose2 true_step(std::size_t n) const { return inverse(truth[n]) * truth[n + 1]; }
 
-  RevisedMap revised(double least_certainty = 1.0, int threads = 1) {
+  RevisedMap revised(double least_probability = 0.7, int threads = 1) {
     RunObserver nobody;
-    return revise_links(views, poses, pieces, doubts, {}, least_certainty, threads, nobody);
+    return revise_links(views, poses, pieces, doubts, {}, least_probability, threads, nobody);
   }
 
   std::vector<Pose2> truth = test::ring_walk(14, 2, 4.0);
@@ -50,12 +50,19 @@ struct Torn {
   std::vector<DoubtfulLink> doubts;
 };
 
+/// Per link: the candidate that joins, or kCut.
+std::vector<int> choices(const RevisedMap& revised) {
+  std::vector<int> chosen;
+  for (const RevisedLink& link : revised.links) chosen.push_back(link.joins ? static_cast<int>(link.candidate) : kCut);
+  return chosen;
+}
+
 /// By itself, the right candidate is the worst.
 TEST(ReviseLinks, TakesWhatAllScansSayAndNotTheTwoAlone) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
   const RevisedMap revised = map.revised();
-  EXPECT_THAT(revised.choice, ElementsAre(2));
+  EXPECT_THAT(choices(revised), ElementsAre(2));
   EXPECT_THAT(revised.piece_of_node, Each(revised.piece_of_node.front()));
   EXPECT_LT(test::worst_off_m(revised.map_from_node, map.truth), 1e-6);
 }
@@ -66,7 +73,7 @@ TEST(ReviseLinks, RepairsSeveralOnlyOneOfWhichIsRight) {
   map.doubts[1].candidates[0].a_from_b = map.true_step(8);  // the map is right here
   map.doubts[1].candidates.push_back({map.true_step(8) * kTurnedAway, 1.0});
   const RevisedMap revised = map.revised();
-  EXPECT_THAT(revised.choice, ElementsAre(2, 0));
+  EXPECT_THAT(choices(revised), ElementsAre(2, 0));
   EXPECT_LT(test::worst_off_m(revised.map_from_node, map.truth), 1e-6);
 }
 
@@ -77,30 +84,48 @@ TEST(ReviseLinks, SplitsWhereNoCandidateIsRight) {
     candidate.score = hypothesis_at(*map.views[6], *map.views[7], candidate.a_from_b, {}).score;
   }
   const RevisedMap revised = map.revised();
-  EXPECT_THAT(revised.choice, ElementsAre(kCut));
+  EXPECT_THAT(choices(revised), ElementsAre(kCut));
   EXPECT_NE(revised.piece_of_node[6], revised.piece_of_node[7]);
   for (std::size_t n = 0; n < map.poses.size(); ++n) {
     EXPECT_THAT(revised.map_from_node[n], HasSameBits(map.poses[n])) << "pieces stay where they are";
   }
 }
 
-TEST(ReviseLinks, JoinsNothingWhenNothingIsCertainEnough) {
+TEST(ReviseLinks, JoinsNothingWhenNothingIsProbableEnough) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
-  EXPECT_THAT(map.revised(1000.0).choice, ElementsAre(kCut));
+  EXPECT_THAT(choices(map.revised(1.0)), ElementsAre(kCut));
 }
 
 /// However good both are: the rival's score goes from far behind to far ahead.
 TEST(ReviseLinks, SplitsWhereTwoPlacesFitAlike) {
   Torn map({6});
   const Pose2 away = map.doubts[0].candidates[0].a_from_b;
-  std::vector<int> choices;
-  for (double score = 0.0; score < 400.0; score += 3.0) {
+  std::vector<int> chosen;
+  for (double score = 0.0; score < 40.0; score += 0.5) {
     map.doubts[0].candidates = {{map.true_step(6), 10.0}, {away, score}};
-    const int choice = map.revised(3.0).choice[0];
-    if (choices.empty() || choices.back() != choice) choices.push_back(choice);
+    const int choice = choices(map.revised()).front();
+    if (chosen.empty() || chosen.back() != choice) chosen.push_back(choice);
   }
-  EXPECT_THAT(choices, ElementsAre(0, kCut, 1));
+  EXPECT_THAT(chosen, ElementsAre(0, kCut, 1));
+}
+
+/// Along a corridor, it is right enough somewhere near by; across it is not.
+TEST(ReviseLinks, CountsNoPlaceAsARivalThatItSlidesTo) {
+  Torn map({6});
+  const auto joins = [&](const Point2& off_m, const Eigen::Vector3d& deviations) {
+    const Eigen::Matrix3d covariance = deviations.cwiseAbs2().asDiagonal();
+    const Pose2 one = map.true_step(6) * Pose2{0.5 * off_m.x(), 0.5 * off_m.y(), 0.0};
+    const Pose2 other = map.true_step(6) * Pose2{-0.5 * off_m.x(), -0.5 * off_m.y(), 0.0};
+    map.doubts[0].candidates = {{other, 8.0, covariance}, {one, 10.0, covariance}};
+    return map.revised(0.9).links[0].joins;
+  };
+  const Eigen::Vector3d held(0.02, 0.02, 0.01);
+  const Eigen::Vector3d along_x(0.5, 0.02, 0.01);
+  EXPECT_FALSE(joins({0.7, 0.0}, held));
+  EXPECT_TRUE(joins({0.7, 0.0}, along_x));
+  EXPECT_FALSE(joins({0.0, 0.7}, along_x));
+  EXPECT_FALSE(joins({1.4, 0.0}, along_x)) << "too far";
 }
 
 /// Nearly the same twice leaves no doubt about where the piece is.
@@ -109,8 +134,38 @@ TEST(ReviseLinks, CountsNoNeighbourAsARival) {
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
   map.doubts[0].candidates.push_back({map.true_step(6) * Pose2{0.05, 0.0, 0.5 * kDegree}, 0.0});
   const RevisedMap revised = map.revised();
-  ASSERT_GE(revised.choice[0], 2);
+  ASSERT_GE(choices(revised).front(), 2);
+  EXPECT_GT(revised.links[0].probability, 0.9);
   EXPECT_LT(test::worst_off_m(revised.map_from_node, map.truth), 0.15);
+}
+
+/// The map's pose is aligned to more than the two scans.
+TEST(ReviseLinks, LeavesThePieceWhereTheMapHasItWhenThatIsTheSamePlace) {
+  Torn map({6}, Pose2{0.05, 0.0, 0.5 * kDegree});
+  map.doubts[0].candidates = {{map.doubts[0].candidates[0].a_from_b, 0.0}, {map.true_step(6), 5.0}};
+  const RevisedMap revised = map.revised();
+  EXPECT_THAT(choices(revised), ElementsAre(0));
+  EXPECT_LT(test::worst_off_m(revised.map_from_node, map.poses), 1e-6);
+}
+
+TEST(ReviseLinks, IsLessSureWithARivalAndWhereAllAreBad) {
+  Torn map({6});
+  map.doubts[0].candidates.push_back({map.true_step(6), 10.0});
+  const double alone = map.revised().links[0].probability;
+  EXPECT_GT(alone, 0.99);
+  map.doubts[0].candidates.push_back({map.true_step(6) * Pose2{0.0, 0.0, kPi}, 12.0});
+  EXPECT_LT(map.revised().links[0].probability, alone - 0.005);
+  for (DoubtfulLink::Candidate& candidate : map.doubts[0].candidates) candidate.score = -40.0;
+  EXPECT_LT(map.revised().links[0].probability, 0.8) << "it may be none of them";
+}
+
+TEST(ReviseLinks, TellsTheBestOfWhatIsNotJoined) {
+  Torn map({6});
+  map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
+  const RevisedLink best = map.revised(1.0).links[0];
+  EXPECT_EQ(best.candidate, 2U);
+  EXPECT_GT(best.probability, 0.5);
+  EXPECT_FALSE(best.joins);
 }
 
 TEST(ReviseLinks, LeavesAllAsItWasWhenAskedToStop) {
@@ -119,17 +174,17 @@ TEST(ReviseLinks, LeavesAllAsItWasWhenAskedToStop) {
   } impatient;
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
-  const RevisedMap revised = revise_links(map.views, map.poses, map.pieces, map.doubts, {}, 1.0, 1, impatient);
-  EXPECT_THAT(revised.choice, ElementsAre(0));
+  const RevisedMap revised = revise_links(map.views, map.poses, map.pieces, map.doubts, {}, 0.7, 1, impatient);
+  EXPECT_THAT(choices(revised), ElementsAre(0));
   EXPECT_LT(test::worst_off_m(revised.map_from_node, map.poses), 1e-6);
 }
 
 TEST(ReviseLinks, IsTheSameToTheBitForAnyNumberOfThreads) {
   Torn map({3, 8});
   for (DoubtfulLink& doubt : map.doubts) doubt.candidates.push_back({map.true_step(doubt.link), 0.0});
-  const RevisedMap one = map.revised(1.0, 1);
-  const RevisedMap three = map.revised(1.0, 3);
-  EXPECT_EQ(one.choice, three.choice);
+  const RevisedMap one = map.revised(0.7, 1);
+  const RevisedMap three = map.revised(0.7, 3);
+  EXPECT_EQ(choices(one), choices(three));
   for (std::size_t n = 0; n < map.poses.size(); ++n)
     EXPECT_THAT(three.map_from_node[n], HasSameBits(one.map_from_node[n]));
 }

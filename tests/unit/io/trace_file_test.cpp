@@ -156,6 +156,28 @@ TEST_F(TraceOfAWalk, HasTheAlternativesOfTheRobustMethod) {
   }
 }
 
+TEST_F(TraceOfAWalk, TellsHowLinksInDoubtWereJudged) {
+  options_.chain.method = Method::kRobust;
+  options_.keyframes.step_m = 0.0;
+  options_.link_revision.doubt_below = 1.0;  // all are
+  const MapResult mapped = write(path());
+  auto traced = records(path());
+  ASSERT_EQ(traced["revision"].size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto& revision = traced["revision"][k];
+    const auto& hypotheses = revision["hypotheses"];
+    ASSERT_GE(hypotheses.size(), traced["link"][k]["hypotheses"].size());
+    EXPECT_EQ(hypotheses[0]["pose"], traced["link"][k]["hypotheses"][0]["pose"]) << "new ones come behind";
+    for (const auto& hypothesis : hypotheses) {
+      EXPECT_GE(hypothesis["for_it"], 0.0);
+      EXPECT_GE(hypothesis["against_it"], 0.0);
+    }
+    EXPECT_LT(revision["in_map"], hypotheses.size());
+    EXPECT_EQ(revision["alternative"], traced["choice"][k]["alternative"]);
+    EXPECT_EQ(revision["probability"], mapped.positions[k + 1].alignment.probability);
+  }
+}
+
 TEST_F(TraceOfAWalk, IsCompressedWhenItsNameSaysSo) {
   write(path("trace.jsonl.gz"));
   gzFile file = gzopen(path("trace.jsonl.gz").c_str(), "rb");

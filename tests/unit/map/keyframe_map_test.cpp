@@ -5,19 +5,17 @@
 
 #include "shapemap/graph/loop_closing.hpp"
 #include "support/ring_walk.hpp"
-#include "support/views.hpp"
 
 namespace shapemap {
 namespace {
 
 using ::testing::Each;
+using ::testing::ElementsAre;
 
-/// A chain of three that look all round, or only to one side, each of whose links is most likely wrong.
+/// A chain of three, each of whose links is most likely wrong.
 struct ImprobableChain {
-  explicit ImprobableChain(const test::Scanner& scanner) {
-    const test::World world = test::ring_world(1);
-    for (const Pose2& pose : test::ring_walk(3, 2, 4.0)) {
-      const auto view = std::make_shared<ScanView>(test::view_from(world, pose, scanner, 1));
+  ImprobableChain() {
+    for (const auto& view : test::views_along(test::ring_world(1), test::ring_walk(3, 2, 4.0))) {
       chain.keyframes.push_back({chain.keyframes.size(), view, {}});
     }
     chain.links.resize(2);
@@ -27,28 +25,33 @@ struct ImprobableChain {
     }
   }
 
-  std::vector<int> choices() const { return map_of_chain(chain, options).link_choice; }
+  std::vector<int> choices(Improbable improbable) const {
+    RunObserver nobody;
+    return map_with_loops(chain, {}, improbable, options, nobody).link_choice;
+  }
 
   KeyframeChain chain;
   MappingOptions options;
 };
 
-TEST(KeyframeMap, ImprobableLinksAreCutAtOnce) {
-  const ImprobableChain walk(test::half_circle());
-  ASSERT_LT(link_probability(walk.chain.links[0]), walk.options.smoothing.split_below);
-  EXPECT_FALSE(is_judged_by_all_scans(walk.chain, 0, walk.options));
-  EXPECT_THAT(walk.choices(), Each(kCut));
+TEST(KeyframeMap, ImprobableLinksOfTheBareChainAreCut) {
+  const ImprobableChain walk;
+  ASSERT_LT(stated_probability(walk.chain.links[0]), walk.options.smoothing.split_below);
+  const KeyframeMap map = map_of_chain(walk.chain, walk.options);
+  EXPECT_THAT(map.link_choice, Each(kCut));
+  EXPECT_THAT(map.component, ElementsAre(0, 1, 2));
 }
 
-TEST(KeyframeMap, UnlessAllScansJudgeThemLater) {
-  ImprobableChain walk(test::full_circle());
-  EXPECT_TRUE(is_judged_by_all_scans(walk.chain, 0, walk.options));
-  EXPECT_THAT(walk.choices(), Each(0));
-  walk.options.link_revision.doubt_below = 0.0;
-  EXPECT_THAT(walk.choices(), Each(kCut)) << "nobody judges them";
-  walk.options = {};
-  walk.options.loops.close_loops = false;
-  EXPECT_THAT(walk.choices(), Each(kCut)) << "the bare chain has no other judge";
+TEST(KeyframeMap, UnlessTheLimitIsLower) {
+  ImprobableChain walk;
+  walk.options.smoothing.split_below = 0.0;
+  EXPECT_THAT(map_of_chain(walk.chain, walk.options).link_choice, Each(0));
+}
+
+TEST(KeyframeMap, WhereAllScansWillJudgeThemTheyStay) {
+  const ImprobableChain walk;
+  EXPECT_THAT(walk.choices(Improbable::kIsCut), Each(kCut));
+  EXPECT_THAT(walk.choices(Improbable::kStays), Each(0));
 }
 
 }  // namespace

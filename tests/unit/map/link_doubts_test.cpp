@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include "shapemap/align/confidence.hpp"
 #include "shapemap/graph/loop_closing.hpp"
 #include "support/matchers.hpp"
 #include "support/ring_walk.hpp"
@@ -22,7 +21,8 @@ const Pose2 kTurnedAway{0.8, -0.6, kPi / 2};
 
 /// A walk round a corner of the ring. Link 6 is cut for a loop that lays what comes after it elsewhere.
 struct CutForALoop {
-  explicit CutForALoop(double strength) {
+  explicit CutForALoop(double strength, const test::Scanner& scanner = test::full_circle())
+      : views(test::views_along(test::ring_world(1), truth, 1, scanner)) {
     for (std::size_t n = 0; n < truth.size(); ++n) chain.keyframes.push_back({n, views[n], {}});
     for (std::size_t i = 0; i + 1 < truth.size(); ++i) {
       KeyframeLink& link = chain.links.emplace_back();
@@ -51,7 +51,7 @@ struct CutForALoop {
   }
 
   std::vector<Pose2> truth = test::ring_walk(14, 2, 4.0);
-  test::Views views = test::views_along(test::ring_world(1), truth);
+  test::Views views;
   KeyframeChain chain;
   KeyframeMap map;
 };
@@ -85,38 +85,57 @@ TEST(LinkDoubts, NoneAreLookedForWhereNoneAreWanted) {
 
 TEST(LinkDoubts, WhatAllScansSayIsTheProbabilityOfTheLink) {
   CutForALoop walk(5.0);
-  EXPECT_FALSE(walk.chain.links[kLink].certainty);
+  EXPECT_FALSE(walk.chain.links[kLink].revised);
   walk.revise();
-  ASSERT_TRUE(walk.chain.links[kLink].certainty);
-  EXPECT_GE(*walk.chain.links[kLink].certainty, MappingOptions().link_revision.least_certainty);
-  EXPECT_DOUBLE_EQ(link_probability(walk.chain.links[kLink]), probability_of(*walk.chain.links[kLink].certainty));
-  EXPECT_FALSE(walk.chain.links[kLink - 1].certainty) << "nobody was asked";
+  ASSERT_TRUE(walk.chain.links[kLink].revised);
+  EXPECT_EQ(walk.chain.links[kLink].revised->hypothesis, static_cast<std::size_t>(walk.map.link_choice[kLink]));
+  EXPECT_GE(walk.chain.links[kLink].revised->probability, MappingOptions().smoothing.split_below);
+  EXPECT_DOUBLE_EQ(stated_probability(walk.chain.links[kLink]), walk.chain.links[kLink].revised->probability);
+  EXPECT_FALSE(walk.chain.links[kLink - 1].revised) << "nobody was asked";
 }
 
-TEST(LinkDoubts, WhatIsCertainEnoughIsStillSplitBelowTheProbabilityThatWasAskedFor) {
-  CutForALoop walk(5.0);
-  MappingOptions options;
-  options.chain.threads = 1;
-  options.smoothing.split_below = 1.0 - 1e-9;
-  RunObserver nobody;
-  ASSERT_TRUE(revise_doubtful_links(options, nobody, nullptr, walk.chain, walk.map));
-  EXPECT_EQ(walk.map.link_choice[kLink], kCut);
-  EXPECT_FALSE(walk.chain.links[kLink].certainty);
-}
-
-/// Nothing is ever certain enough here.
+/// Nothing is ever so probable.
 TEST(LinkDoubts, WhatStaysInDoubtSplitsTheMapAndOpensTheLoop) {
   CutForALoop walk(5.0);
   MappingOptions options;
   options.chain.threads = 1;
-  options.link_revision.clear_certainty = 1000.0;
-  options.link_revision.least_certainty = 1000.0;
+  options.smoothing.split_below = 1.0;
   RunObserver nobody;
   ASSERT_TRUE(revise_doubtful_links(options, nobody, nullptr, walk.chain, walk.map));
   EXPECT_THAT(walk.map.loops, IsEmpty());
   EXPECT_EQ(walk.map.link_choice[kLink], kCut);
   EXPECT_NE(walk.map.component[kLink], walk.map.component[kLink + 1]);
   EXPECT_FALSE(walk.map.held_by_loops[kLink]);
+  ASSERT_TRUE(walk.chain.links[kLink].revised) << "the best is reported all the same";
+  EXPECT_GT(walk.chain.links[kLink].revised->probability, 0.5);
+}
+
+TEST(LinkDoubts, WhatIsNotClearIsSearchedAgain) {
+  const auto hypotheses_of = [](double clear_above) {
+    CutForALoop walk(5.0);
+    MappingOptions options;
+    options.chain.threads = 1;
+    options.link_revision.clear_above = clear_above;
+    RunObserver nobody;
+    revise_doubtful_links(options, nobody, nullptr, walk.chain, walk.map);
+    return walk.chain.links[kLink].hypotheses.size();
+  };
+  EXPECT_GT(hypotheses_of(1.0), hypotheses_of(0.0));
+}
+
+/// Of scans that look one way as well.
+TEST(LinkDoubts, ALinkThatTheOthersContradictIsReplaced) {
+  CutForALoop walk(5.0, test::half_circle());
+  walk.map.loops.clear();
+  walk.map.held_by_loops[kLink] = false;
+  KeyframeLink& link = walk.chain.links[kLink];
+  link.hypotheses.insert(link.hypotheses.begin(), link.hypotheses[0]);
+  link.hypotheses[0].ref_from_query = walk.step(kLink) * kTurnedAway;
+  link.choice = {0, 0.1, {0.0, 0.0}};
+  walk.map.link_choice[kLink] = 0;
+  ASSERT_TRUE(walk.revise());
+  EXPECT_EQ(walk.map.link_choice[kLink], 1);
+  EXPECT_LT(test::worst_off_m(walk.map.map_from_keyframe, walk.truth), 0.1);
 }
 
 }  // namespace

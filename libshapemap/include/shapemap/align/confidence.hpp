@@ -15,6 +15,10 @@ double probability_of(double log_odds);
 /// Probability that `best` is right. `margin` is its score above that of the best other place.
 double match_probability(const PoseHypothesis& best, double margin);
 
+/// The same of two scans that follow each other, by what match_probability() says: it allows for scans of two different
+/// places, which neighbours are not.
+double probability_of_neighbours(double match_probability);
+
 /// The margin that stands for "there is no other place".
 inline constexpr double kFullMargin = 20.0;
 

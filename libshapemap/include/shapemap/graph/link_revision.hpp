@@ -13,23 +13,16 @@
 namespace shapemap {
 
 struct LinkRevisionOptions {
-  double doubt_below = 0.95;
-  double clear_certainty = 4.0;
-  double least_certainty = 2.5;
+  double doubt_below = 0.99;
+  double clear_above = 0.98;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit(Field{"revise-below", "a less probable alignment that alone joins two pieces of the map is revised; 0: none",
                 0, 1},
           self.doubt_below);
-    visit(
-        Field{"revise-clear-certainty",
-              "it is searched again, thoroughly, unless it is better than all others, and good, by this, as logarithm "
-              "of odds",
-              -1000, 1000},
-        self.clear_certainty);
-    visit(Field{"revise-least-certainty", "it then splits the map unless it is so by this", -1000, 1000},
-          self.least_certainty);
+    visit(Field{"revise-clear-above", "it is searched again, thoroughly, unless it is then as probable as this", 0, 1},
+          self.clear_above);
   }
 };
 
@@ -37,27 +30,50 @@ struct LinkRevisionOptions {
 struct DoubtfulLink {
   struct Candidate {
     Pose2 a_from_b;
-    double score = 0.0;  ///< of these two scans alone: PoseHypothesis::score
+    double score = 0.0;                                    ///< of these two scans alone: PoseHypothesis::score
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, theta), in the frame of the first node
   };
   std::size_t link = 0;
   std::vector<Candidate> candidates;  ///< at least one
 };
 
+/// What all other pairs of scans of two pieces say of a place, by MapEvidence. They do not tell independently of each
+/// other, so only the balance counts.
+struct Balance {
+  double for_it = 0.0;
+  double against_it = 0.0;
+
+  void add(double evidence) { (evidence > 0.0 ? for_it : against_it) += evidence > 0.0 ? evidence : -evidence; }
+
+  /// -1: all against it, 0: nothing said, 1: all for it.
+  double value() const {
+    constexpr double kLittle = 1.2;
+    return (for_it - against_it) / (for_it + against_it + kLittle);
+  }
+};
+
+struct RevisedLink {
+  std::size_t candidate = 0;            ///< the best; where the observer asked to stop, that of the map
+  double probability = 0.0;             ///< that it is right; 0 where nobody was asked
+  bool joins = false;                   ///< the two pieces
+  std::vector<Balance> said_by_others;  ///< of each candidate; empty where nobody was asked
+};
+
 struct RevisedMap {
   std::vector<Pose2> map_from_node;
   std::vector<std::size_t> piece_of_node;  ///< pieces that were joined have the number of one of them
-  std::vector<int> choice;                 ///< per doubtful link: the candidate that is taken; kCut: none
-  std::vector<double> certainty;           ///< per doubtful link: of that candidate, as logarithm of odds
+  std::vector<RevisedLink> links;          ///< per doubtful link
 };
 
-/// Joins the pieces (nodes with the same `piece_of_node`, right to each other) at the doubtful links, the most certain
+/// Joins the pieces (nodes with the same `piece_of_node`, right to each other) at the doubtful links, the most probable
 /// first. A candidate is worth its own score and what all pairs of scans of the two pieces then say (MapEvidence), as
-/// far as they are near each other along the chain. The best is as certain as it leads over the best other place, less
-/// half of what it is bad by. What is less certain than `least_certainty` is not joined. Stops early, with the rest of
-/// the links as they were, when the observer asks to.
+/// far as they are near each other along the chain, and more where the map has it. From that follows how probable each
+/// place is, and that it is none of them (multinomial logit). Places near by that it only slides to, along a corridor,
+/// are one. What is less probable than `least_probability` is not
+/// joined. Stops early, with the rest of the links as they were, when the observer asks to.
 RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node,
                         std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulLink>& doubtful,
-                        const VisibilityOptions& visibility, double least_certainty, int threads,
+                        const VisibilityOptions& visibility, double least_probability, int threads,
                         RunObserver& observer);
 
 }  // namespace shapemap

@@ -34,6 +34,9 @@ PoseGraphSolution solve_pose_graph(const std::vector<Pose2>& map_from_node,
 /// Square of the error of one constraint, in standard deviations, without the loss.
 double squared_error(const PoseConstraint& constraint, const std::vector<Pose2>& map_from_node);
 
+/// Whether `other` is the place that a constraint tells, as far as it holds it: within three deviations and 10 degrees.
+bool is_same_place(const PoseConstraint& one, const Pose2& other);
+
 /// For each node the lowest number among the nodes that it hangs together with.
 std::vector<std::size_t> connected_parts(std::size_t num_nodes, const std::vector<PoseConstraint>& constraints);
 

@@ -35,6 +35,7 @@ class TraceFile : public TraceSink {
   void on_alignment(const TracedAlignment& alignment) override;
   void on_link(const TracedLink& link) override;
   void on_choice(const TracedChoice& choice) override;
+  void on_revision(const TracedRevision& revision) override;
 
   /// What became of each position, and the file to its place; without this there is none.
   void commit(const MapResult& result);

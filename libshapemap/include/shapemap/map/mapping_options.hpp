@@ -60,7 +60,7 @@ struct SmoothingOptions {
   double companion_weight = 0.5;
   double doubt_below = 0.3;
   int more_references = 2;
-  double split_below = 0.01;
+  double split_below = 0.7;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {

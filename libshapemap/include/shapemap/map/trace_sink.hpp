@@ -6,6 +6,7 @@
 
 #include "shapemap/align/align.hpp"
 #include "shapemap/align/pose_hypothesis.hpp"
+#include "shapemap/graph/link_revision.hpp"
 #include "shapemap/shape/shape.hpp"
 
 /// How a caller sees what led to a map, while it is made: for figures and analyses. See io/trace_file.hpp for one that
@@ -40,8 +41,19 @@ struct TracedLink {
 struct TracedChoice {
   std::size_t reference_index = 0;
   std::size_t query_index = 0;
-  std::size_t alternative = 0;  ///< index into the hypotheses of the link
+  std::size_t alternative = 0;  ///< index into the hypotheses of the link, or of its revision where there is one
   double margin = 0.0;
+};
+
+/// How a link that was in doubt was judged by all scans of both sides: see revise_links().
+struct TracedRevision {
+  std::size_t reference_index = 0;
+  std::size_t query_index = 0;
+  const std::vector<PoseHypothesis>& hypotheses;  ///< those of the link, and then what was looked for since
+  const std::vector<Balance>& said_by_others;     ///< of each hypothesis; empty when nobody was asked any more
+  std::size_t in_map = 0;                         ///< the hypothesis that the map had until then
+  std::size_t alternative = 0;                    ///< the best
+  double probability = 0.0;                       ///< that it is right
 };
 
 /// Calls come from one thread; shapes and alignments come in the order of the log, and what is referred to is gone
@@ -51,9 +63,10 @@ struct TraceSink {
   /// All that the method looks at of a position, in the robot's frame.
   virtual void on_shape(std::size_t /*position_index*/, const std::vector<ShapePoint>& /*points*/) {}
   virtual void on_alignment(const TracedAlignment& /*alignment*/) {}
-  /// Again for a link that was revised, with the hypotheses that this added behind the others.
   virtual void on_link(const TracedLink& /*link*/) {}
-  /// After all links.
+  /// In order, after all links.
+  virtual void on_revision(const TracedRevision& /*revision*/) {}
+  /// After all links and revisions.
   virtual void on_choice(const TracedChoice& /*choice*/) {}
 };
 
