@@ -116,9 +116,8 @@ def links_of(write: Callable[[Path], Path], truth: Array, mapper: Mapper) -> Lin
             if not line.startswith('{"record":"revision"'):
                 continue
             revision = json.loads(line)
-            if all("for_it" in hypothesis for hypothesis in revision["hypotheses"]):
-                links.revised.append(candidates_of(revision, truth))
-                links.stated.append((float(revision["probability"]), best_is_right(revision, truth)))
+            links.revised.append(candidates_of(revision, truth))
+            links.stated.append((float(revision["probability"]), best_is_right(revision, truth)))
         return links
 
 

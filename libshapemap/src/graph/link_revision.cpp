@@ -24,9 +24,6 @@ constexpr double kSlack = 1.3;
 constexpr double kSame_m = 0.40;
 constexpr double kSame_rad = 8 * kDegree;
 
-/// What slides no farther is right enough to be joined.
-constexpr double kSlides_m = 1.0;
-
 /// What a candidate is worth, as logarithm of odds: a multinomial logit, fitted to doubtful links of thinned real logs
 /// and of simulated arenas by scripts/fit_links.py.
 constexpr double kPerScore = 0.63;
@@ -44,10 +41,11 @@ bool is_same(const Pose2& a, const Pose2& b) {
   return (a.translation() - b.translation()).norm() < kSame_m && angle_between(a.theta_rad, b.theta_rad) < kSame_rad;
 }
 
-/// Whether nothing holds `other` apart from the candidate `one`, which slides along a corridor.
-bool slides_to(const DoubtfulLink::Candidate& one, const Pose2& other) {
-  return (one.a_from_b.translation() - other.translation()).norm() < kSlides_m &&
-         is_same_place({0, 0, one.a_from_b, one.covariance, 0.0}, other);
+/// How right it is to be at the candidate `one` when `other` is true: a place is right or not, but along a corridor it
+/// slides, and is the less right the farther.
+double share_right(const DoubtfulLink::Candidate& one, const Pose2& other) {
+  if (is_same(one.a_from_b, other)) return 1.0;
+  return std::max(0.0, 1.0 - deviations_off({0, 0, one.a_from_b, one.covariance, 0.0}, other) / kSameDeviations);
 }
 
 /// The best candidate by their `worths`, against all others, and none of them. Where nothing holds it along a corridor,
@@ -66,7 +64,7 @@ RevisedLink verdict_by(const std::vector<double>& worths, const std::vector<Doub
     places.push_back(pose);
     const double odds = std::exp(worths[k] - worths[order.front()]);
     all += odds;
-    if (is_same(best.a_from_b, pose) || slides_to(best, pose)) right += odds;
+    right += share_right(best, pose) * odds;
   }
   // The map has aligned its own to more than these two.
   const std::size_t taken = is_same(best.a_from_b, candidates[0].a_from_b) ? 0 : order.front();

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -133,14 +134,19 @@ double squared_error(const PoseConstraint& constraint, const std::vector<Pose2>&
   return error.dot(constraint.covariance.llt().solve(error));
 }
 
-bool is_same_place(const PoseConstraint& one, const Pose2& other) {
+double deviations_off(const PoseConstraint& one, const Pose2& other) {
   constexpr double kNear_m = 0.1;
   constexpr double kHeading_rad = 10 * kDegree;
-  constexpr double kDeviations = 3.0;
-  if (angle_between(one.a_from_b.theta_rad, other.theta_rad) > kHeading_rad) return false;
+  if (angle_between(one.a_from_b.theta_rad, other.theta_rad) > kHeading_rad) {
+    return std::numeric_limits<double>::infinity();
+  }
   const Point2 off_m = other.translation() - one.a_from_b.translation();
   const Eigen::Matrix2d spread = one.covariance.topLeftCorner<2, 2>() + kNear_m * kNear_m * Eigen::Matrix2d::Identity();
-  return off_m.dot(spread.ldlt().solve(off_m)) < kDeviations * kDeviations;
+  return std::sqrt(off_m.dot(spread.ldlt().solve(off_m)));
+}
+
+bool is_same_place(const PoseConstraint& one, const Pose2& other) {
+  return deviations_off(one, other) < kSameDeviations;
 }
 
 }  // namespace shapemap

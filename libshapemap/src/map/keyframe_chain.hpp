@@ -38,11 +38,10 @@ struct AttachedScan {
 
 /// What all scans of both sides say of a link that was in doubt: see revise_doubtful_links().
 struct RevisedChoice {
-  std::size_t hypothesis = 0;  ///< the best
-  double probability = 0.0;    ///< that it is right
-  std::size_t in_map = 0;      ///< the hypothesis that the map had until then
-  /// Of each hypothesis; empty when nobody was asked any more.
-  std::vector<Balance> said_by_others;
+  std::size_t hypothesis = 0;           ///< the best
+  double probability = 0.0;             ///< that it is right
+  std::size_t in_map = 0;               ///< the hypothesis that the map had until then
+  std::vector<Balance> said_by_others;  ///< of each hypothesis
 };
 
 /// What a keyframe may be to the one before it, and which of it the scans around choose.

@@ -76,8 +76,7 @@ class LinkDoubts {
     for (std::size_t d = 0; d < doubts_.size(); ++d) {
       const RevisedLink& link = revised.links[d];
       const std::size_t hypothesis = doubts_[d].hypotheses[link.candidate];
-      chain_.links[doubts_[d].of_map.link].revised = {hypothesis, link.probability, doubts_[d].in_map,
-                                                      by_hypothesis(doubts_[d], link.said_by_others)};
+      note(doubts_[d], link);
       if (link.joins) {
         take(doubts_[d].of_map.link, static_cast<int>(hypothesis));
       } else {
@@ -85,6 +84,15 @@ class LinkDoubts {
       }
     }
     doubts_ = std::move(rest);
+  }
+
+  /// Where the observer asked to stop, nobody was asked, and the link is as probable as before.
+  void note(const Doubt& doubt, const RevisedLink& link) {
+    std::optional<RevisedChoice>& revised = chain_.links[doubt.of_map.link].revised;
+    revised.reset();
+    if (link.said_by_others.empty()) return;
+    revised = RevisedChoice{doubt.hypotheses[link.candidate], link.probability, doubt.in_map,
+                            by_hypothesis(doubt, link.said_by_others)};
   }
 
   /// Candidates are all hypotheses, that of the map first.

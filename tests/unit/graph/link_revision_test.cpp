@@ -110,22 +110,22 @@ TEST(ReviseLinks, SplitsWhereTwoPlacesFitAlike) {
   EXPECT_THAT(chosen, ElementsAre(0, kCut, 1));
 }
 
-/// Along a corridor, it is right enough somewhere near by; across it is not.
-TEST(ReviseLinks, CountsNoPlaceAsARivalThatItSlidesTo) {
+/// Along a corridor, and the more the less far; not across it.
+TEST(ReviseLinks, IsNearlyRightWhereItSlides) {
   Torn map({6});
-  const auto joins = [&](const Point2& off_m, const Eigen::Vector3d& deviations) {
+  const auto probability = [&](const Point2& off_m, const Eigen::Vector3d& deviations) {
     const Eigen::Matrix3d covariance = deviations.cwiseAbs2().asDiagonal();
     const Pose2 one = map.true_step(6) * Pose2{0.5 * off_m.x(), 0.5 * off_m.y(), 0.0};
     const Pose2 other = map.true_step(6) * Pose2{-0.5 * off_m.x(), -0.5 * off_m.y(), 0.0};
-    map.doubts[0].candidates = {{other, 8.0, covariance}, {one, 10.0, covariance}};
-    return map.revised(0.9).links[0].joins;
+    map.doubts[0].candidates = {{other, 9.0, covariance}, {one, 10.0, covariance}};
+    return map.revised().links[0].probability;
   };
   const Eigen::Vector3d held(0.02, 0.02, 0.01);
   const Eigen::Vector3d along_x(0.5, 0.02, 0.01);
-  EXPECT_FALSE(joins({0.7, 0.0}, held));
-  EXPECT_TRUE(joins({0.7, 0.0}, along_x));
-  EXPECT_FALSE(joins({0.0, 0.7}, along_x));
-  EXPECT_FALSE(joins({1.4, 0.0}, along_x)) << "too far";
+  const double doubt = 1.0 - probability({0.5, 0.0}, held);
+  EXPECT_LT(1.0 - probability({0.5, 0.0}, along_x), 0.6 * doubt);
+  EXPECT_GT(1.0 - probability({1.0, 0.0}, along_x), 0.6 * (1.0 - probability({1.0, 0.0}, held)));
+  EXPECT_NEAR(probability({0.0, 0.5}, along_x), probability({0.0, 0.5}, held), 1e-9);
 }
 
 /// Nearly the same twice leaves no doubt about where the piece is.

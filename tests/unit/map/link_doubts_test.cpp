@@ -94,6 +94,17 @@ TEST(LinkDoubts, WhatAllScansSayIsTheProbabilityOfTheLink) {
   EXPECT_FALSE(walk.chain.links[kLink - 1].revised) << "nobody was asked";
 }
 
+TEST(LinkDoubts, NothingIsStatedOfALinkWhereTheObserverAskedToStop) {
+  struct Impatient : RunObserver {
+    bool keep_going() override { return false; }
+  } impatient;
+  CutForALoop walk(5.0);
+  MappingOptions options;
+  options.chain.threads = 1;
+  revise_doubtful_links(options, impatient, nullptr, walk.chain, walk.map);
+  for (const KeyframeLink& link : walk.chain.links) EXPECT_FALSE(link.revised);
+}
+
 /// Nothing is ever so probable.
 TEST(LinkDoubts, WhatStaysInDoubtSplitsTheMapAndOpensTheLoop) {
   CutForALoop walk(5.0);

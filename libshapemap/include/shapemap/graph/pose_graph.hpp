@@ -34,7 +34,13 @@ PoseGraphSolution solve_pose_graph(const std::vector<Pose2>& map_from_node,
 /// Square of the error of one constraint, in standard deviations, without the loss.
 double squared_error(const PoseConstraint& constraint, const std::vector<Pose2>& map_from_node);
 
-/// Whether `other` is the place that a constraint tells, as far as it holds it: within three deviations and 10 degrees.
+/// How far `other` is from the pose that a constraint tells, in standard deviations of the place; infinite where it is
+/// turned by more than 10 degrees.
+double deviations_off(const PoseConstraint& one, const Pose2& other);
+
+inline constexpr double kSameDeviations = 3.0;
+
+/// Whether `other` is the same place, as far as a constraint holds it.
 bool is_same_place(const PoseConstraint& one, const Pose2& other);
 
 /// For each node the lowest number among the nodes that it hangs together with.
