@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fit how probable a link between consecutive keyframes is: one that no loop holds by its two scans, and one in doubt
-by all scans of both sides. Links come from variants of real logs, and from simulated arenas; how probable the mapper
-says they are is held against the truth, so that, on logs that nothing was fitted to, it is a test of it. What is fitted
-belongs into probability_of_neighbours() and link_revision.cpp."""
+by all scans of both sides. Links come from variants of real logs, from simulated arenas and from hard scenes; how
+probable the mapper says they are is held against the truth: on logs that nothing was fitted to, a test of it. What is
+fitted belongs into probability_of_neighbours() and link_revision.cpp."""
 
 from __future__ import annotations
 
@@ -37,34 +37,48 @@ from evaluation.mapping import Mapper
 from evaluation.programs import Failure
 from evaluation.selection import add_mapper_arguments, mapper_from, name_list, parser_for_logs, selected_logs
 from evaluation.variants import VariantError, VariedLog, varied
+from shapemap_sim.hard_scenes import SCENES
 from shapemap_sim.pairs import pose_from
 from shapemap_sim.poses import Array, compose, inverse
 from shapemap_sim.robot import RobotOptions
-from shapemap_sim.simulation import SimulationOptions, simulate
+from shapemap_sim.simulation import Simulation, SimulationOptions, simulate
 from shapemap_sim.write import nist_text, write_whole
 from simulate_arena import number
 
 EXAMPLE = """example, what the weights were fitted to, and what they were tried on:
-  scripts/fit_links.py --only orebro,belgioioso,aces,csail --seeds 0-79
-  scripts/fit_links.py --only orebro,belgioioso,aces,csail --seeds 80-159 \\
+  scripts/fit_links.py --only orebro,belgioioso,aces,csail --seeds 0-79 --scene-seeds 20-49
+  scripts/fit_links.py --only orebro,belgioioso,aces,csail --seeds 80-159 --scene-seeds 50-69 \\
     --variants drop-30-5,drop-30-6,drop-30-7,drop-20-2,drop-25-0,mirrored+every-2-0,reversed+drop-30-8
 
 Exit status: 0 done, 1 some runs gave no map or a log is missing, 2 wrong usage, 3 malformed data sets or logs."""
 VARIANTS = "drop-30-2,drop-30-3,drop-30-4,drop-20-0,drop-20-1,drop-40-0,every-2-0+reversed,every-2-1+reversed"
+SCENES_WITH_LINKS = (  # right or wrong, and not hidden by people
+    "twin-rooms,half-random,half-blocks,glass-dark,tilted,laser-100-0.25-20,laser-100-2-8,laser-180-1-80,"
+    "laser-180-0.1-30,laser-180-2-8,laser-240-0.35-4,laser-240-1-10,laser-360-2-6"
+).split(",")
 ALL_STAY = ("--revise-below", "0", "--split-below", "0")
 
 
 @dataclass(frozen=True)
 class Links:
-    """Of one log. Lone ones as `(stated, right)`, revised ones with what was stated of the best of them."""
+    """Of one log. Lone ones as `(stated, unseen share, right)`, revised ones with what was stated of the best."""
 
-    lone: list[tuple[float, bool]] = field(default_factory=list)
+    lone: list[tuple[float, float, bool]] = field(default_factory=list)
     revised: list[Candidates] = field(default_factory=list)
     stated: list[tuple[float, bool]] = field(default_factory=list)
     fault: str = ""
 
 
-def lone_links(report: Mapping[str, Any], truth: Array) -> list[tuple[float, bool]]:
+def unseen_shares(trace: Path) -> dict[tuple[int, int], float]:
+    """By the positions of a link, as it was when it was searched."""
+    with trace.open(encoding="utf-8") as lines:
+        records = [json.loads(line) for line in lines if line.startswith('{"record":"link"')]
+    return {(record["reference"], record["query"]): float(record["unseen_share"]) for record in records}
+
+
+def lone_links(
+    report: Mapping[str, Any], unseen: Mapping[tuple[int, int], float], truth: Array
+) -> list[tuple[float, float, bool]]:
     links = []
     for position in report["positions"]:
         alignment = position["alignment"] or {}
@@ -72,7 +86,8 @@ def lone_links(report: Mapping[str, Any], truth: Array) -> list[tuple[float, boo
             continue
         step = compose(inverse(truth[alignment["reference"]]), truth[position["index"]])
         found = pose_from(alignment["ref_from_query"])
-        links.append((float(alignment["probability"]), is_place(found, step)))
+        share = unseen.get((alignment["reference"], position["index"]), 0.0)
+        links.append((float(alignment["probability"]), share, is_place(found, step)))
     return links
 
 
@@ -87,7 +102,7 @@ def best_is_right(revision: Mapping[str, Any], truth: Array) -> bool:
     return is_place(pose, step) or slides_to(pose, np.array(best["covariance"]), step)
 
 
-def candidates_of(revision: Mapping[str, Any], truth: Array) -> Candidates:
+def candidates_of(revision: Mapping[str, Any], unseen_share: float, truth: Array) -> Candidates:
     step = true_step(revision, truth)
     hypotheses = revision["hypotheses"]
     poses = np.array([hypothesis["pose"] for hypothesis in hypotheses])
@@ -96,7 +111,8 @@ def candidates_of(revision: Mapping[str, Any], truth: Array) -> Candidates:
         return np.array([float(hypothesis[name]) for hypothesis in hypotheses])
 
     right = np.array([is_place(pose, step) for pose in poses])
-    return Candidates(poses, column("score"), column("for_it"), column("against_it"), revision["in_map"], right)
+    said = column("for_it"), column("against_it")
+    return Candidates(poses, column("score"), *said, revision["in_map"], right, unseen_share)
 
 
 def links_of(write: Callable[[Path], Path], truth: Array, mapper: Mapper) -> Links:
@@ -107,16 +123,18 @@ def links_of(write: Callable[[Path], Path], truth: Array, mapper: Mapper) -> Lin
         bare = Mapper(mapper.cli, (*mapper.arguments, *ALL_STAY), mapper.timeout_s)
         whole = Mapper(mapper.cli, (*mapper.arguments, "--trace", str(trace)), mapper.timeout_s)
         try:
-            lone = lone_links(bare.run([log], folder)[0], truth)
+            bare_report = bare.run([log], folder)[0]
             whole.run([log], folder)
         except Failure as failure:
             return Links(fault=str(failure))
-        links = Links(lone)
+        unseen = unseen_shares(trace)
+        links = Links(lone_links(bare_report, unseen, truth))
         for line in trace.open(encoding="utf-8"):
             if not line.startswith('{"record":"revision"'):
                 continue
             revision = json.loads(line)
-            links.revised.append(candidates_of(revision, truth))
+            share = unseen.get((revision["reference"], revision["query"]), 0.0)
+            links.revised.append(candidates_of(revision, share, truth))
             links.stated.append((float(revision["probability"]), best_is_right(revision, truth)))
         return links
 
@@ -132,34 +150,38 @@ def links_of_variant(log: VariedLog, mapper: Mapper) -> Links:
 def links_of_arena(seed: int, mapper: Mapper) -> Links:
     """16 positions, 1.5 m apart, unknown headings."""
     robot = RobotOptions(num_positions=16, spacing_m=1.5, heading_uncertainty_deg=180.0)
-    simulation = simulate(SimulationOptions(seed=seed, robot=robot))
+    return links_of_simulation(simulate(SimulationOptions(seed=seed, robot=robot)), mapper)
 
+
+def links_of_scene(name: str, seed: int, mapper: Mapper) -> Links:
+    return links_of_simulation(SCENES[name].make(seed), mapper)
+
+
+def links_of_simulation(simulation: Simulation, mapper: Mapper) -> Links:
     def write(folder: Path) -> Path:
-        write_whole(folder / "arena.nist", nist_text(simulation))
-        return folder / "arena.nist"
+        write_whole(folder / "walk.nist", nist_text(simulation))
+        return folder / "walk.nist"
 
     return links_of(write, simulation.drive.map_from_robot, mapper)
 
 
-def columns(pairs: list[tuple[float, bool]]) -> tuple[Array, Any]:
-    return np.array([stated for stated, _ in pairs], float), np.array([right for _, right in pairs], bool)
-
-
 def report_on(links: list[Links]) -> str:
-    lone = columns([pair for one in links for pair in one.lone])
-    stated = columns([pair for one in links for pair in one.stated])
+    lone = np.array([link for one in links for link in one.lone], float).reshape(-1, 3)
+    stated = np.array([link for one in links for link in one.stated], float).reshape(-1, 2)
     revised = [link for one in links for link in one.revised]
     parts = []
-    if len(lone[0]):
-        found = fitted_neighbours(*lone)
-        parts.append(f"{len(lone[0])} lone links, by their two scans:\n\n{calibration_table(*lone)}")
+    if len(lone):
+        right = lone[:, 2] > 0
+        found = fitted_neighbours(lone[:, 0], lone[:, 1], right)
+        parts.append(f"{len(lone)} lone links, by their two scans:\n\n{calibration_table(lone[:, 0], right)}")
         parts.append(
-            f"log odds: {found[0]:.2f} + {found[1]:.2f} of match_probability() (in use: "
-            f"{NEIGHBOURS[0]:g} + {NEIGHBOURS[1]:g})"
+            f"log odds: {found[0]:.2f} + {found[1]:.2f} of match_probability() {found[2]:+.1f} of the unseen share "
+            f"(in use: {NEIGHBOURS[0]:g} + {NEIGHBOURS[1]:g} {NEIGHBOURS[2]:+g})"
         )
     if revised:
         weights = fitted_revision(revised)
-        parts.append(f"{len(revised)} links in doubt, by all scans of both sides:\n\n{calibration_table(*stated)}")
+        table = calibration_table(stated[:, 0], stated[:, 1] > 0)
+        parts.append(f"{len(revised)} links in doubt, by all scans of both sides:\n\n{table}")
         rows = [
             f"  {weight:6.2f} ({used:g}) {term}"
             for weight, used, term in zip(weights, REVISION, REVISION_TERMS, strict=True)
@@ -175,11 +197,12 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     add = parser.add_argument
     add("--variants", type=name_list, default=name_list(VARIANTS), metavar="LIST", help="of logs, default %(default)s")
     add("--seeds", type=parse_seeds, default=[], metavar="LIST", help="of simulated arenas, such as 0-79")
+    add("--scene-seeds", type=parse_seeds, default=[], metavar="LIST", help="of hard scenes, such as 20-49")
     add("--jobs", type=number(1, 256, int), default=2, metavar="N", help="logs at the same time (default 2)")
     add_mapper_arguments(parser)
     arguments = parser.parse_args(argv)
-    if not arguments.logs and not arguments.only and not arguments.seeds:
-        parser.error("no LOG, no --only and no --seeds")
+    if not (arguments.logs or arguments.only or arguments.seeds or arguments.scene_seeds):
+        parser.error("no LOG, no --only, no --seeds and no --scene-seeds")
     return arguments
 
 
@@ -199,6 +222,8 @@ def main(argv: list[str] | None = None) -> int:
     with ProcessPoolExecutor(max_workers=arguments.jobs) as pool:
         futures = [pool.submit(links_of_variant, log, mapper) for log in wanted]
         futures += [pool.submit(links_of_arena, seed, mapper) for seed in arguments.seeds]
+        for name in SCENES_WITH_LINKS:
+            futures += [pool.submit(links_of_scene, name, seed, mapper) for seed in arguments.scene_seeds]
         links = [future.result() for future in futures]
     print(report_on(links))
     faults = [one.fault for one in links if one.fault]

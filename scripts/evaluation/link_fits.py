@@ -3,7 +3,7 @@
 
 A *lone* link is one that no loop holds, and is judged by its two scans: logistic regression on what
 `match_probability()` says. A *revised* one is judged by all scans of both sides: a multinomial logit over its
-candidates and none of them, as in `revise_links()`.
+candidates and none of them, as in `revise_links()`. What two scans do not see (`unseen_share()`) speaks against either.
 """
 
 from __future__ import annotations
@@ -23,9 +23,16 @@ SAME_DEG = 8.0
 USUAL_SLIP_M = 0.5
 LEAST_SCORE = -12.0
 
-NEIGHBOURS = (3.0, 0.48)  # in use, in probability_of_neighbours(): constant, per log odds
-REVISION = (0.63, 2.9, 1.2, -5.6, 1.2)  # in use, in link_revision.cpp
-REVISION_TERMS = ("score", "balance of all others", "the map has it", "none of them", "little (in the balance)")
+NEIGHBOURS = (3.0, 0.48, -10.0)  # in use, in probability_of_neighbours(): constant, per log odds, per unseen share
+REVISION = (0.63, 2.9, 1.2, -5.6, 1.2, 20.0)  # in use, in link_revision.cpp
+REVISION_TERMS = (
+    "score",
+    "balance of all others",
+    "the map has it",
+    "none of them",
+    "little (in the balance)",
+    "none of them, per unseen share",
+)
 
 BANDS = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 1.0)
 
@@ -59,6 +66,7 @@ class Candidates:
     against_it: Array
     in_map: int
     right: Bools
+    unseen_share: float = 0.0
     same: Bools = field(init=False)  # [k, k]: are one place
 
     def __post_init__(self) -> None:
@@ -66,7 +74,7 @@ class Candidates:
         object.__setattr__(self, "same", same)
 
     def worths(self, weights: Sequence[float]) -> Array:
-        per_score, by_others, of_map, _, little = weights
+        per_score, by_others, of_map, _, little, _ = weights
         balance = (self.for_it - self.against_it) / (self.for_it + self.against_it + max(little, 1e-6))
         worths = per_score * np.maximum(LEAST_SCORE, self.scores) + by_others * balance
         worths[self.in_map] += of_map
@@ -84,7 +92,7 @@ class Candidates:
         """The places, best first, and how probable each is; what is missing to 1 is none of them."""
         worths = self.worths(weights)
         places = self.places(worths)
-        odds = np.append(worths[places], weights[3])
+        odds = np.append(worths[places], weights[3] + weights[5] * self.unseen_share)
         shares = np.exp(odds - odds.max())
         return places, shares[:-1] / shares.sum()
 
@@ -101,20 +109,21 @@ def log_odds(probability: Array) -> Array:
     return np.asarray(np.log(kept / (1 - kept)))
 
 
-def match_log_odds(stated: Array) -> Array:
+def match_log_odds(stated: Array, unseen_share: Array) -> Array:
     """What `match_probability()` said, from what is stated of lone links."""
-    return np.asarray((log_odds(stated) - NEIGHBOURS[0]) / NEIGHBOURS[1])
+    return np.asarray((log_odds(stated) - NEIGHBOURS[0] - NEIGHBOURS[2] * unseen_share) / NEIGHBOURS[1])
 
 
-def fitted_neighbours(stated: Array, right: Bools) -> tuple[float, float]:
-    """Constant and weight of the log odds of `match_probability()`, by what is stated of lone links."""
-    odds, sign = match_log_odds(stated), np.where(right, 1.0, -1.0)
+def fitted_neighbours(stated: Array, unseen_share: Array, right: Bools) -> tuple[float, float, float]:
+    """Constant, and weights of the log odds of `match_probability()` and of what is not seen, by what is stated of lone
+    links."""
+    odds, sign = match_log_odds(stated, unseen_share), np.where(right, 1.0, -1.0)
 
     def loss(weights: Array) -> float:
-        return float(np.mean(np.logaddexp(0.0, -sign * (weights[0] + weights[1] * odds))))
+        return float(np.mean(np.logaddexp(0.0, -sign * (weights[0] + weights[1] * odds + weights[2] * unseen_share))))
 
     found = minimize(loss, np.array(NEIGHBOURS), method="Nelder-Mead")
-    return float(found.x[0]), float(found.x[1])
+    return float(found.x[0]), float(found.x[1]), float(found.x[2])
 
 
 def mean_log_likelihood(links: Sequence[Candidates], weights: Sequence[float]) -> float:

@@ -44,15 +44,15 @@ def test_one_place_is_forty_centimetres_and_eight_degrees(pose: list[float], sam
 
 def test_neighbours_are_no_rivals() -> None:
     two, four = candidates([2.0, 0.0]), candidates([2.0, 0.0, -30.0, 2.0])
-    places, shares = four.probabilities((1.0, 0.0, 0.0, -9.0, 1.0))
+    places, shares = four.probabilities((1.0, 0.0, 0.0, -9.0, 1.0, 0.0))
     assert places == [0, 1, 2]
-    assert shares[0] == pytest.approx(two.probabilities((1.0, 0.0, 0.0, -9.0, 1.0))[1][0], rel=1e-4)
+    assert shares[0] == pytest.approx(two.probabilities((1.0, 0.0, 0.0, -9.0, 1.0, 0.0))[1][0], rel=1e-4)
 
 
 def test_it_may_be_none_of_them() -> None:
     bad = candidates([-8.0, -9.0])
-    assert bad.likelihood((1.0, 0.0, 0.0, 0.0, 1.0)) > 0.99
-    assert candidates([-8.0, -9.0], right=0).likelihood((1.0, 0.0, 0.0, 0.0, 1.0)) < 0.01
+    assert bad.likelihood((1.0, 0.0, 0.0, 0.0, 1.0, 0.0)) > 0.99
+    assert candidates([-8.0, -9.0], right=0).likelihood((1.0, 0.0, 0.0, 0.0, 1.0, 0.0)) < 0.01
 
 
 def drawn(weights: tuple[float, ...], count: int) -> list[Candidates]:
@@ -62,6 +62,7 @@ def drawn(weights: tuple[float, ...], count: int) -> list[Candidates]:
     for _ in range(count):
         scores = random.uniform(-6, 4, 3)
         said: dict[str, Any] = {name: random.uniform(0, 8, 3) for name in ("for_it", "against_it")}
+        said["unseen_share"] = random.choice([0.0, 0.2, 0.4])
         unknown = candidates(list(scores), **said)
         places, shares = unknown.probabilities(weights)
         right = random.choice([*places, -1], p=[*shares, 1 - shares.sum()])
@@ -70,20 +71,30 @@ def drawn(weights: tuple[float, ...], count: int) -> list[Candidates]:
 
 
 def test_the_weights_that_made_the_links_are_found() -> None:
-    weights = (1.0, 4.0, 0.5, -3.0, 1.2)
-    links = drawn(weights, 1500)
+    weights = (1.0, 4.0, 0.5, -3.0, 1.2, 14.0)
+    links = drawn(weights, 800)
     found = fitted_revision(links)
     assert found[:4] == pytest.approx(weights[:4], abs=0.6)
+    assert found[5] == pytest.approx(weights[5], abs=3.0)
     assert mean_log_likelihood(links, found) >= mean_log_likelihood(links, REVISION)
 
 
 def test_what_is_stated_of_lone_links_is_fitted_when_it_is_wrong() -> None:
     random = np.random.default_rng(3)
-    stated = random.uniform(0.02, 0.98, 4000)
-    found = fitted_neighbours(stated, random.uniform(size=4000) < stated)
-    assert found == pytest.approx(NEIGHBOURS, abs=0.2)
-    sobered = fitted_neighbours(stated, random.uniform(size=4000) < 0.5 * stated)
+    stated, unseen = random.uniform(0.02, 0.98, 4000), random.choice([0.0, 0.2], 4000)
+    found = fitted_neighbours(stated, unseen, random.uniform(size=4000) < stated)
+    assert found[:2] == pytest.approx(NEIGHBOURS[:2], abs=0.2)
+    assert found[2] == pytest.approx(NEIGHBOURS[2], abs=1.5)
+    sobered = fitted_neighbours(stated, unseen, random.uniform(size=4000) < 0.5 * stated)
     assert sobered[0] < found[0] - 0.5
+    blinded = fitted_neighbours(stated, unseen, random.uniform(size=4000) < np.where(unseen > 0, 0.5, 1) * stated)
+    assert blinded[2] < found[2] - 3.0
+
+
+def test_what_is_not_seen_speaks_for_none_of_them() -> None:
+    weights = (1.0, 0.0, 0.0, -1.0, 1.0, 10.0)
+    wide, narrow = candidates([2.0, 0.0], right=0), candidates([2.0, 0.0], right=0, unseen_share=0.2)
+    assert narrow.likelihood(weights) < wide.likelihood(weights) - 0.1
 
 
 def test_the_table_counts_what_is_right() -> None:
@@ -112,8 +123,10 @@ if '--trace' in words:
         return dict(pose=[x_m, 0.0, 0.0], score=score, covariance=COVARIANCE, for_it=3.0 - x_m, against_it=x_m)
     record = dict(record='revision', reference=1, query=2, hypotheses=[hypothesis(2.0, 1.0), hypothesis(1.0, 0.0)],
                   in_map=0, alternative=1, probability=0.75)
+    links = [dict(record='link', reference=k - 1, query=k, unseen_share=0.1) for k in range(1, len(positions))]
     with open(words[words.index('--trace') + 1], 'w') as trace:
-        trace.write('{"record":"run"}' + chr(10) + json.dumps(record, separators=(',', ':')) + chr(10))
+        for line in [dict(record='run'), *links, record]:
+            trace.write(json.dumps(line, separators=(',', ':')) + chr(10))
 """
 
 

@@ -21,7 +21,7 @@ constexpr double kHasDirection_m = 0.5;
 
 /// The share of motions of a kind that was never seen before: this among many, half where so few are known.
 constexpr double kLeastUnheard = 0.03;
-constexpr double kFew = 6.0;
+constexpr double kFew = 2.0;
 
 std::size_t step_bin(double step_m) {
   return std::min(static_cast<std::size_t>(std::min(step_m, 1e3) / kStepBin_m), kStepBins - 1);

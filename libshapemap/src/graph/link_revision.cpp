@@ -31,6 +31,7 @@ constexpr double kLeastScore = -12.0;  ///< however badly two scans go together 
 constexpr double kByOthers = 2.9;
 constexpr double kOfMap = 1.2;  ///< the whole map was asked already
 constexpr double kNoneOfThem = -5.6;
+constexpr double kUnseen = 20.0;  ///< the less two scans see, the likelier it is none of them
 
 double worth(const DoubtfulLink& doubt, std::size_t k, const Balance& said_by_others) {
   return kPerScore * std::max(kLeastScore, doubt.candidates[k].score) + kByOthers * said_by_others.value() +
@@ -50,13 +51,14 @@ double share_right(const DoubtfulLink::Candidate& one, const Pose2& other) {
 
 /// The best candidate by their `worths`, against all others, and none of them. Where nothing holds it along a corridor,
 /// it is right if any is that it may slide to.
-RevisedLink verdict_by(const std::vector<double>& worths, const std::vector<DoubtfulLink::Candidate>& candidates) {
+RevisedLink verdict_by(const std::vector<double>& worths, const DoubtfulLink& doubt) {
+  const std::vector<DoubtfulLink::Candidate>& candidates = doubt.candidates;
   std::vector<std::size_t> order(worths.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t j, std::size_t k) { return worths[j] > worths[k]; });
   const DoubtfulLink::Candidate& best = candidates[order.front()];
   double right = 0.0;
-  double all = std::exp(kNoneOfThem - worths[order.front()]);
+  double all = std::exp(kNoneOfThem + kUnseen * doubt.unseen_share - worths[order.front()]);
   std::vector<Pose2> places;
   for (const std::size_t k : order) {
     const Pose2& pose = candidates[k].a_from_b;
@@ -87,7 +89,7 @@ class Revision {
                  [&](std::size_t k) { balances[k] = said_by_others(doubt.link, doubt.candidates[k].a_from_b); });
     std::vector<double> worths;
     for (std::size_t k = 0; k < balances.size(); ++k) worths.push_back(worth(doubt, k, balances[k]));
-    RevisedLink verdict = verdict_by(worths, doubt.candidates);
+    RevisedLink verdict = verdict_by(worths, doubt);
     verdict.said_by_others = std::move(balances);
     return verdict;
   }

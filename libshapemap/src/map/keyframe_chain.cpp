@@ -56,7 +56,7 @@ double link_probability(const KeyframeLink& link) {
 double stated_probability(const KeyframeLink& link) {
   if (link.revised) return link.revised->probability;
   if (link.settled_covariance || link.hypotheses.empty()) return link_probability(link);
-  return probability_of_neighbours(link_probability(link));
+  return probability_of_neighbours(link_probability(link), link.unseen_share);
 }
 
 MotionHabit motion_habit(const KeyframeChain& chain) {

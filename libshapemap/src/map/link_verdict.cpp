@@ -13,19 +13,19 @@ void judge_link(const Log& log, const KeyframeChain& chain, const KeyframeMap& m
   const std::size_t before = chain.keyframes[link].position_index;
   if (part_with(log, before) != part_with(log, outcome.position_index)) return;  // there is nothing to align to
   outcome.reference = before;
-  const std::vector<PoseHypothesis>& hypotheses = chain.links[link].hypotheses;
-  const Choice& choice = chain.links[link].choice;
-  const std::optional<RevisedChoice>& revised = chain.links[link].revised;
+  const KeyframeLink& of = chain.links[link];
+  const std::vector<PoseHypothesis>& hypotheses = of.hypotheses;
+  const Choice& choice = of.choice;
   const bool is_cut = map.link_choice[link] == kCut;
-  const std::size_t best = revised ? revised->hypothesis : choice.alternative;
+  const std::size_t best = of.revised ? of.revised->hypothesis : choice.alternative;
   const std::size_t taken = is_cut ? best : static_cast<std::size_t>(map.link_choice[link]);
   const bool is_first_choice = taken == choice.alternative;
   double margin = choice.margin;
   if (!is_first_choice) margin = hypotheses[taken].score - hypotheses[choice.alternative].score;
   std::optional<double> probability;
   if (!hypotheses.empty()) {
-    probability =
-        revised ? revised->probability : probability_of_neighbours(match_probability(hypotheses[taken], margin));
+    probability = of.revised ? of.revised->probability
+                             : probability_of_neighbours(match_probability(hypotheses[taken], margin), of.unseen_share);
   }
   outcome.alignment = judged(hypotheses, taken, margin, options, probability);
   outcome.reason = outcome.alignment.reason;

@@ -151,7 +151,12 @@ void RobustChain::link_keyframes(std::size_t first_new) {
     const std::size_t num_own = link.size();
     for (const PoseHypothesis& pose : borrowed[i]) add_if_new(pose, link);
     chain_.links[first + i - 1].num_own = num_own;
-    if (chain_.keyframes[first + i].expected) expect(*chain_.keyframes[first + i].expected, first + i - 1);
+    if (chain_.keyframes[first + i].expected) {
+      expect(*chain_.keyframes[first + i].expected, first + i - 1);
+    } else {
+      chain_.links[first + i - 1].unseen_share =
+          unseen_share(view_of_keyframe(first + i - 1), view_of_keyframe(first + i));
+    }
   }
   result_.times.align_s += timed_for(count, [&](std::size_t i) {
     if (first + i >= 2) chain_.links[first + i - 2].bonus = companion_scores(first + i - 2);
@@ -193,7 +198,7 @@ void RobustChain::expect_the_usual() {
     KeyframeLink& link = chain_.links[i];
     link.is_complete = true;
     if (sink_ && !link.hypotheses.empty()) {
-      sink_->on_link({position_of(i), position_of(i + 1), link.hypotheses, link.num_own});
+      sink_->on_link({position_of(i), position_of(i + 1), link.hypotheses, link.num_own, link.unseen_share});
     }
   }
 }

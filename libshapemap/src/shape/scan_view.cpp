@@ -2,6 +2,7 @@
 #include "shapemap/shape/scan_view.hpp"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 
 namespace shapemap {
@@ -64,6 +65,18 @@ double reach_m(const std::vector<RangeImage>& images) {
   return *ninth;
 }
 
+/// Of sectors, wide enough for beams that are lost one by one not to matter.
+double seen_share(const std::vector<ShapePoint>& points) {
+  constexpr std::size_t kSectors = 36;
+  std::bitset<kSectors> seen;
+  for (const ShapePoint& point : points) {
+    const double turns = std::atan2(point.p_m.y(), point.p_m.x()) / (2.0 * kPi);
+    const auto sector = static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(kSectors));
+    seen.set(std::min(sector, kSectors - 1));
+  }
+  return static_cast<double>(seen.count()) / static_cast<double>(kSectors);
+}
+
 }  // namespace
 
 bool looks_all_round(const ScanView& view) {
@@ -84,6 +97,7 @@ ScanView view_of(const Position& position, const ReturnOptions& returns, const P
   }
   view.tangents = tangent_histogram(all);
   view.reach_m = reach_m(view.images);
+  view.seen_share = seen_share(all);
 
   const auto max_points = static_cast<std::size_t>(options.max_points);
   const std::size_t step = std::max<std::size_t>(1, (all.size() + max_points - 1) / max_points);

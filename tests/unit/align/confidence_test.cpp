@@ -134,7 +134,7 @@ TEST(MatchProbability, TellsAClearWinnerFromATie) {
 TEST(ProbabilityOfNeighbours, RisesAndStaysAProbability) {
   double before = 0.0;
   for (int k = 0; k <= 100; ++k) {
-    const double probability = probability_of_neighbours(k / 100.0);
+    const double probability = probability_of_neighbours(k / 100.0, 0.0);
     EXPECT_GT(probability, before) << k;
     EXPECT_LT(probability, 1.0) << k;
     before = probability;
@@ -142,9 +142,30 @@ TEST(ProbabilityOfNeighbours, RisesAndStaysAProbability) {
 }
 
 TEST(ProbabilityOfNeighbours, TrustsWhatMayAsWellBeOfTwoPlaces) {
-  EXPECT_GT(probability_of_neighbours(0.5), 0.9);
-  EXPECT_GT(probability_of_neighbours(0.01), 0.5);
-  EXPECT_LT(probability_of_neighbours(1e-6), 0.1);
+  EXPECT_GT(probability_of_neighbours(0.5, 0.0), 0.9);
+  EXPECT_GT(probability_of_neighbours(0.01, 0.0), 0.5);
+  EXPECT_LT(probability_of_neighbours(1e-6, 0.0), 0.1);
+}
+
+TEST(ProbabilityOfNeighbours, FallsWithWhatTheyDoNotSee) {
+  for (const double match : {0.01, 0.5, 0.99}) {
+    const double odds = log_odds_of(probability_of_neighbours(match, 0.0));
+    EXPECT_LT(log_odds_of(probability_of_neighbours(match, 0.1)), odds - 0.5) << match;
+    EXPECT_LT(log_odds_of(probability_of_neighbours(match, 0.3)), odds - 2.0) << match;
+  }
+}
+
+TEST(UnseenShare, IsOfTheScanThatSeesLess) {
+  test::Scanner narrow = test::half_circle();
+  narrow.num_beams = 91;
+  narrow.view_rad = 91 * kDegree;
+  const ScanView all = test::view_from(test::cluttered_room(1), {});
+  const ScanView quarter = test::view_from(test::cluttered_room(1), {}, narrow);
+  const ScanView half = test::view_from(test::cluttered_room(1), {}, test::half_circle());
+  EXPECT_EQ(unseen_share(all, all), 0.0);
+  EXPECT_NEAR(unseen_share(all, half), 0.0, 0.03);
+  EXPECT_NEAR(unseen_share(all, quarter), 0.25, 0.03);
+  EXPECT_EQ(unseen_share(quarter, half), unseen_share(half, quarter));
 }
 
 }  // namespace

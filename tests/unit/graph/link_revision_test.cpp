@@ -159,6 +159,14 @@ TEST(ReviseLinks, IsLessSureWithARivalAndWhereAllAreBad) {
   EXPECT_LT(map.revised().links[0].probability, 0.8) << "it may be none of them";
 }
 
+TEST(ReviseLinks, IsLessSureOfScansThatSeeLittle) {
+  Torn map({6});
+  map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
+  const double sure = map.revised().links[0].probability;
+  map.doubts[0].unseen_share = 0.3;
+  EXPECT_LT(map.revised().links[0].probability, sure - 0.05);
+}
+
 TEST(ReviseLinks, TellsTheBestOfWhatIsNotJoined) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});

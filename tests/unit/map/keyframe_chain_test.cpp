@@ -101,6 +101,14 @@ TEST(ChooseHypotheses, WhereScansHoldThePlaceSlidingIsOne) {
   EXPECT_NEAR(chain.links[0].choice.margin, 0.1, 1e-9);
 }
 
+TEST(StatedProbability, IsLessOfScansThatSeeLittle) {
+  KeyframeLink link = sliding_link().links[0];
+  link.choice.margin = 3.0;
+  const double all_round = stated_probability(link);
+  link.unseen_share = 0.25;
+  EXPECT_LT(log_odds_of(stated_probability(link)), log_odds_of(all_round) - 1.0);
+}
+
 TEST(MotionHabitOfAChain, IsThatOfLinksThatAreCertainAndHeld) {
   const test::Laps& laps = test::two_laps();
   KeyframeChain chain = test::KnownChain(laps).chain;

@@ -40,6 +40,7 @@ MappingOptions options_of(Method method) {
 struct Recorder : TraceSink {
   struct Link {
     std::size_t reference, query, num_own;
+    double unseen_share;
     std::vector<PoseHypothesis> hypotheses;
   };
   void on_shape(std::size_t index, const std::vector<ShapePoint>& points) override {
@@ -53,7 +54,7 @@ struct Recorder : TraceSink {
     queries.push_back(shown.query_index);
   }
   void on_link(const TracedLink& l) override {
-    links.push_back({l.reference_index, l.query_index, l.num_own, l.hypotheses});
+    links.push_back({l.reference_index, l.query_index, l.num_own, l.unseen_share, l.hypotheses});
   }
   void on_choice(const TracedChoice& choice) override { choices.push_back(choice); }
 
@@ -132,6 +133,20 @@ TEST(TraceSink, SeesWhatTheRobustMethodChoosesFrom) {
     EXPECT_THAT(link.hypotheses[choice.alternative].ref_from_query,
                 HasSameBits(result.positions[link.query].alignment.ranked[0].ref_from_query));
   }
+}
+
+TEST(TraceSink, SeesHowLittleNarrowScansSee) {
+  test::Scanner narrow;
+  narrow.num_beams = 91;
+  narrow.view_rad = 91 * kDegree;
+  Log log;
+  for (const double x_m : {0.0, 0.15}) {
+    log.positions.push_back(test::scan_of(test::cluttered_room(2), {x_m, 0.0, 0.0}, narrow));
+  }
+  Recorder recorder;
+  mapped(log, Method::kRobust, &recorder);
+  ASSERT_EQ(recorder.links.size(), 1U);
+  EXPECT_NEAR(recorder.links[0].unseen_share, 0.25, 0.05);
 }
 
 TEST(TraceSink, WhatItThrowsEndsTheRun) {

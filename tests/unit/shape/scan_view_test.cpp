@@ -89,11 +89,17 @@ TEST(ScanView, ReachesAsFarAsNineOfTenReturns) {
   EXPECT_NEAR(view.reach_m, 3.0, 0.05);
 }
 
+TEST(ScanView, SeesAShareOfAllDirections) {
+  EXPECT_EQ(test::view_from(test::round_room(3.0), {}).seen_share, 1.0);
+  EXPECT_NEAR(test::view_from(test::round_room(3.0), {}, test::half_circle()).seen_share, 0.5, 0.03);
+}
+
 TEST(ScanView, OfNoReturnsIsEmpty) {
   for (const Position& position : {test::blind_position(), Position{}}) {
     const ScanView view = test::view_of(position);
     EXPECT_EQ(view.size(), 0U);
     EXPECT_EQ(view.reach_m, 0.0);
+    EXPECT_EQ(view.seen_share, 0.0);
     EXPECT_EQ(view.images.size(), position.sub_scans.size());
   }
 }

@@ -35,6 +35,7 @@ struct DoubtfulLink {
   };
   std::size_t link = 0;
   std::vector<Candidate> candidates;  ///< at least one
+  double unseen_share = 0.0;          ///< of the two scans: see unseen_share() in confidence.hpp
 };
 
 /// What all other pairs of scans of two pieces say of a place, by MapEvidence. They do not tell independently of each
@@ -68,9 +69,9 @@ struct RevisedMap {
 /// Joins the pieces (nodes with the same `piece_of_node`, right to each other) at the doubtful links, the most probable
 /// first. A candidate is worth its own score and what all pairs of scans of the two pieces then say (MapEvidence), as
 /// far as they are near each other along the chain, and more where the map has it. From that follows how probable each
-/// place is, and that it is none of them (multinomial logit). A place that the best only slides to, along a corridor,
-/// counts for it in part. What is less probable than `least_probability` is not joined. Stops early, with the rest of
-/// the links as they were, when the observer asks to.
+/// place is, and that it is none of them (multinomial logit), the more so the less the two scans see. A place that the
+/// best only slides to, along a corridor, counts for it in part. What is less probable than `least_probability` is not
+/// joined. Stops early, with the rest of the links as they were, when the observer asks to.
 RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node,
                         std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulLink>& doubtful,
                         const VisibilityOptions& visibility, double least_probability, int threads,
