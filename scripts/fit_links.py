@@ -46,7 +46,8 @@ from shapemap_sim.write import nist_text, write_whole
 from simulate_arena import number
 
 EXAMPLE = """example, what the weights were fitted to, and what they were tried on:
-  scripts/fit_links.py --only orebro,belgioioso,aces,csail --seeds 0-79 --scene-seeds 20-49
+  scripts/fit_links.py --only orebro,belgioioso,aces,csail --seeds 0-79
+  scripts/fit_links.py --scene-seeds 20-49 --shortfall-alone
   scripts/fit_links.py --only orebro,belgioioso,aces,csail --seeds 80-159 --scene-seeds 50-69 \\
     --variants drop-30-5,drop-30-6,drop-30-7,drop-20-2,drop-25-0,mirrored+every-2-0,reversed+drop-30-8
 
@@ -61,7 +62,7 @@ ALL_STAY = ("--revise-below", "0", "--split-below", "0")
 
 @dataclass(frozen=True)
 class Links:
-    """Of one log. Lone ones as `(stated, unseen share, right)`, revised ones with what was stated of the best."""
+    """Of one log. Lone ones as `(stated, view shortfall, right)`, revised ones with what was stated of the best."""
 
     lone: list[tuple[float, float, bool]] = field(default_factory=list)
     revised: list[Candidates] = field(default_factory=list)
@@ -69,15 +70,15 @@ class Links:
     fault: str = ""
 
 
-def unseen_shares(trace: Path) -> dict[tuple[int, int], float]:
+def view_shortfalls(trace: Path) -> dict[tuple[int, int], float]:
     """By the positions of a link, as it was when it was searched."""
     with trace.open(encoding="utf-8") as lines:
         records = [json.loads(line) for line in lines if line.startswith('{"record":"link"')]
-    return {(record["reference"], record["query"]): float(record["unseen_share"]) for record in records}
+    return {(record["reference"], record["query"]): float(record["view_shortfall"]) for record in records}
 
 
 def lone_links(
-    report: Mapping[str, Any], unseen: Mapping[tuple[int, int], float], truth: Array
+    report: Mapping[str, Any], shortfall: Mapping[tuple[int, int], float], truth: Array
 ) -> list[tuple[float, float, bool]]:
     links = []
     for position in report["positions"]:
@@ -86,7 +87,7 @@ def lone_links(
             continue
         step = compose(inverse(truth[alignment["reference"]]), truth[position["index"]])
         found = pose_from(alignment["ref_from_query"])
-        share = unseen.get((alignment["reference"], position["index"]), 0.0)
+        share = shortfall.get((alignment["reference"], position["index"]), 0.0)
         links.append((float(alignment["probability"]), share, is_place(found, step)))
     return links
 
@@ -102,7 +103,7 @@ def best_is_right(revision: Mapping[str, Any], truth: Array) -> bool:
     return is_place(pose, step) or slides_to(pose, np.array(best["covariance"]), step)
 
 
-def candidates_of(revision: Mapping[str, Any], unseen_share: float, truth: Array) -> Candidates:
+def candidates_of(revision: Mapping[str, Any], view_shortfall: float, truth: Array) -> Candidates:
     step = true_step(revision, truth)
     hypotheses = revision["hypotheses"]
     poses = np.array([hypothesis["pose"] for hypothesis in hypotheses])
@@ -112,7 +113,7 @@ def candidates_of(revision: Mapping[str, Any], unseen_share: float, truth: Array
 
     right = np.array([is_place(pose, step) for pose in poses])
     said = column("for_it"), column("against_it")
-    return Candidates(poses, column("score"), *said, revision["in_map"], right, unseen_share)
+    return Candidates(poses, column("score"), *said, revision["in_map"], right, view_shortfall)
 
 
 def links_of(write: Callable[[Path], Path], truth: Array, mapper: Mapper) -> Links:
@@ -127,13 +128,13 @@ def links_of(write: Callable[[Path], Path], truth: Array, mapper: Mapper) -> Lin
             whole.run([log], folder)
         except Failure as failure:
             return Links(fault=str(failure))
-        unseen = unseen_shares(trace)
-        links = Links(lone_links(bare_report, unseen, truth))
+        shortfall = view_shortfalls(trace)
+        links = Links(lone_links(bare_report, shortfall, truth))
         for line in trace.open(encoding="utf-8"):
             if not line.startswith('{"record":"revision"'):
                 continue
             revision = json.loads(line)
-            share = unseen.get((revision["reference"], revision["query"]), 0.0)
+            share = shortfall.get((revision["reference"], revision["query"]), 0.0)
             links.revised.append(candidates_of(revision, share, truth))
             links.stated.append((float(revision["probability"]), best_is_right(revision, truth)))
         return links
@@ -165,21 +166,22 @@ def links_of_simulation(simulation: Simulation, mapper: Mapper) -> Links:
     return links_of(write, simulation.drive.map_from_robot, mapper)
 
 
-def report_on(links: list[Links]) -> str:
+def report_on(links: list[Links], shortfall_alone: bool) -> str:
+    of_lone, of_revised = ([2], [5]) if shortfall_alone else (range(len(NEIGHBOURS)), range(len(REVISION)))
     lone = np.array([link for one in links for link in one.lone], float).reshape(-1, 3)
     stated = np.array([link for one in links for link in one.stated], float).reshape(-1, 2)
     revised = [link for one in links for link in one.revised]
     parts = []
     if len(lone):
         right = lone[:, 2] > 0
-        found = fitted_neighbours(lone[:, 0], lone[:, 1], right)
+        found = fitted_neighbours(lone[:, 0], lone[:, 1], right, of_lone)
         parts.append(f"{len(lone)} lone links, by their two scans:\n\n{calibration_table(lone[:, 0], right)}")
         parts.append(
-            f"log odds: {found[0]:.2f} + {found[1]:.2f} of match_probability() {found[2]:+.1f} of the unseen share "
+            f"log odds: {found[0]:.2f} + {found[1]:.2f} of match_probability() {found[2]:+.1f} of the view shortfall "
             f"(in use: {NEIGHBOURS[0]:g} + {NEIGHBOURS[1]:g} {NEIGHBOURS[2]:+g})"
         )
     if revised:
-        weights = fitted_revision(revised)
+        weights = fitted_revision(revised, of_revised)
         table = calibration_table(stated[:, 0], stated[:, 1] > 0)
         parts.append(f"{len(revised)} links in doubt, by all scans of both sides:\n\n{table}")
         rows = [
@@ -198,6 +200,7 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     add("--variants", type=name_list, default=name_list(VARIANTS), metavar="LIST", help="of logs, default %(default)s")
     add("--seeds", type=parse_seeds, default=[], metavar="LIST", help="of simulated arenas, such as 0-79")
     add("--scene-seeds", type=parse_seeds, default=[], metavar="LIST", help="of hard scenes, such as 20-49")
+    add("--shortfall-alone", action="store_true", help="fit what the view shortfall is worth, all else as in use")
     add("--jobs", type=number(1, 256, int), default=2, metavar="N", help="logs at the same time (default 2)")
     add_mapper_arguments(parser)
     arguments = parser.parse_args(argv)
@@ -225,7 +228,7 @@ def main(argv: list[str] | None = None) -> int:
         for name in SCENES_WITH_LINKS:
             futures += [pool.submit(links_of_scene, name, seed, mapper) for seed in arguments.scene_seeds]
         links = [future.result() for future in futures]
-    print(report_on(links))
+    print(report_on(links, arguments.shortfall_alone))
     faults = [one.fault for one in links if one.fault]
     for fault in faults:
         complain(fault)

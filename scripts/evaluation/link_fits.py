@@ -3,12 +3,13 @@
 
 A *lone* link is one that no loop holds, and is judged by its two scans: logistic regression on what
 `match_probability()` says. A *revised* one is judged by all scans of both sides: a multinomial logit over its
-candidates and none of them, as in `revise_links()`. What two scans do not see (`unseen_share()`) speaks against either.
+candidates and none of them, as in `revise_links()`. How much of a view two scans lack (`view_shortfall()`) speaks
+against either.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -23,15 +24,15 @@ SAME_DEG = 8.0
 USUAL_SLIP_M = 0.5
 LEAST_SCORE = -12.0
 
-NEIGHBOURS = (3.0, 0.48, -10.0)  # in use, in probability_of_neighbours(): constant, per log odds, per unseen share
-REVISION = (0.63, 2.9, 1.2, -5.6, 1.2, 20.0)  # in use, in link_revision.cpp
+NEIGHBOURS = (3.0, 0.48, -12.0)  # in use, in probability_of_neighbours(): constant, per log odds, per view shortfall
+REVISION = (0.63, 2.9, 1.2, -5.6, 1.2, 25.0)  # in use, in link_revision.cpp
 REVISION_TERMS = (
     "score",
     "balance of all others",
     "the map has it",
     "none of them",
     "little (in the balance)",
-    "none of them, per unseen share",
+    "none of them, per view shortfall",
 )
 
 BANDS = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 1.0)
@@ -66,7 +67,7 @@ class Candidates:
     against_it: Array
     in_map: int
     right: Bools
-    unseen_share: float = 0.0
+    view_shortfall: float = 0.0
     same: Bools = field(init=False)  # [k, k]: are one place
 
     def __post_init__(self) -> None:
@@ -92,7 +93,7 @@ class Candidates:
         """The places, best first, and how probable each is; what is missing to 1 is none of them."""
         worths = self.worths(weights)
         places = self.places(worths)
-        odds = np.append(worths[places], weights[3] + weights[5] * self.unseen_share)
+        odds = np.append(worths[places], weights[3] + weights[5] * self.view_shortfall)
         shares = np.exp(odds - odds.max())
         return places, shares[:-1] / shares.sum()
 
@@ -109,36 +110,45 @@ def log_odds(probability: Array) -> Array:
     return np.asarray(np.log(kept / (1 - kept)))
 
 
-def match_log_odds(stated: Array, unseen_share: Array) -> Array:
+def match_log_odds(stated: Array, view_shortfall: Array) -> Array:
     """What `match_probability()` said, from what is stated of lone links."""
-    return np.asarray((log_odds(stated) - NEIGHBOURS[0] - NEIGHBOURS[2] * unseen_share) / NEIGHBOURS[1])
+    return np.asarray((log_odds(stated) - NEIGHBOURS[0] - NEIGHBOURS[2] * view_shortfall) / NEIGHBOURS[1])
 
 
-def fitted_neighbours(stated: Array, unseen_share: Array, right: Bools) -> tuple[float, float, float]:
-    """Constant, and weights of the log odds of `match_probability()` and of what is not seen, by what is stated of lone
-    links."""
-    odds, sign = match_log_odds(stated, unseen_share), np.where(right, 1.0, -1.0)
+def best_weights(loss: Callable[[list[float]], float], in_use: Sequence[float], free: Sequence[int]) -> list[float]:
+    """Those with the least loss; what is not in `free` stays as it is in use."""
 
-    def loss(weights: Array) -> float:
-        return float(np.mean(np.logaddexp(0.0, -sign * (weights[0] + weights[1] * odds + weights[2] * unseen_share))))
+    def with_free(values: Array) -> list[float]:
+        weights = list(in_use)
+        for k, value in zip(free, values, strict=True):
+            weights[k] = float(value)
+        return weights
 
-    found = minimize(loss, np.array(NEIGHBOURS), method="Nelder-Mead")
-    return float(found.x[0]), float(found.x[1]), float(found.x[2])
+    start = np.array([in_use[k] for k in free])
+    options = {"maxiter": 600, "xatol": 5e-3, "fatol": 1e-6}
+    return with_free(minimize(lambda values: loss(with_free(values)), start, method="Nelder-Mead", options=options).x)
+
+
+def fitted_neighbours(
+    stated: Array, view_shortfall: Array, right: Bools, free: Sequence[int] = range(len(NEIGHBOURS))
+) -> list[float]:
+    """Constant, and weights of the log odds of `match_probability()` and of the view shortfall, by what is stated of
+    lone links."""
+    odds, sign = match_log_odds(stated, view_shortfall), np.where(right, 1.0, -1.0)
+
+    def loss(weights: Sequence[float]) -> float:
+        return float(np.mean(np.logaddexp(0.0, -sign * (weights[0] + weights[1] * odds + weights[2] * view_shortfall))))
+
+    return best_weights(loss, NEIGHBOURS, free)
 
 
 def mean_log_likelihood(links: Sequence[Candidates], weights: Sequence[float]) -> float:
     return float(np.mean([np.log(max(link.likelihood(weights), 1e-12)) for link in links]))
 
 
-def fitted_revision(links: Sequence[Candidates]) -> list[float]:
+def fitted_revision(links: Sequence[Candidates], free: Sequence[int] = range(len(REVISION))) -> list[float]:
     """Weights of REVISION_TERMS."""
-
-    def loss(weights: Array) -> float:
-        return -mean_log_likelihood(links, weights.tolist())
-
-    start = np.array(REVISION)
-    found = minimize(loss, start, method="Nelder-Mead", options={"maxiter": 600, "xatol": 5e-3, "fatol": 1e-6})
-    return [float(weight) for weight in found.x]
+    return best_weights(lambda weights: -mean_log_likelihood(links, weights), REVISION, free)
 
 
 def calibration_table(stated: Array, right: Bools) -> str:

@@ -111,7 +111,8 @@ def test_the_mapper_finds_scans_of_a_crowd_and_no_others() -> None:
     outcome = run_simulated("crowd", 1, CLI, [])
     assert outcome.fault == ""
     spoilt = [s for s in outcome.scans if s.spoilt]
-    assert len(spoilt) >= 6
+    assert len(outcome.scans) >= 50
+    assert len(spoilt) >= 6  # of nine; some are in no piece, or not in the largest
     assert sum(s.flagged for s in spoilt) >= 0.7 * len(spoilt)
     assert not any(s.flagged for s in outcome.scans if s.clean)
 

@@ -62,7 +62,7 @@ def drawn(weights: tuple[float, ...], count: int) -> list[Candidates]:
     for _ in range(count):
         scores = random.uniform(-6, 4, 3)
         said: dict[str, Any] = {name: random.uniform(0, 8, 3) for name in ("for_it", "against_it")}
-        said["unseen_share"] = random.choice([0.0, 0.2, 0.4])
+        said["view_shortfall"] = random.choice([0.0, 0.2, 0.4])
         unknown = candidates(list(scores), **said)
         places, shares = unknown.probabilities(weights)
         right = random.choice([*places, -1], p=[*shares, 1 - shares.sum()])
@@ -72,7 +72,7 @@ def drawn(weights: tuple[float, ...], count: int) -> list[Candidates]:
 
 def test_the_weights_that_made_the_links_are_found() -> None:
     weights = (1.0, 4.0, 0.5, -3.0, 1.2, 14.0)
-    links = drawn(weights, 800)
+    links = drawn(weights, 500)
     found = fitted_revision(links)
     assert found[:4] == pytest.approx(weights[:4], abs=0.6)
     assert found[5] == pytest.approx(weights[5], abs=3.0)
@@ -81,19 +81,22 @@ def test_the_weights_that_made_the_links_are_found() -> None:
 
 def test_what_is_stated_of_lone_links_is_fitted_when_it_is_wrong() -> None:
     random = np.random.default_rng(3)
-    stated, unseen = random.uniform(0.02, 0.98, 4000), random.choice([0.0, 0.2], 4000)
-    found = fitted_neighbours(stated, unseen, random.uniform(size=4000) < stated)
+    stated, shortfall = random.uniform(0.02, 0.98, 4000), random.choice([0.0, 0.2], 4000)
+    found = fitted_neighbours(stated, shortfall, random.uniform(size=4000) < stated)
     assert found[:2] == pytest.approx(NEIGHBOURS[:2], abs=0.2)
     assert found[2] == pytest.approx(NEIGHBOURS[2], abs=1.5)
-    sobered = fitted_neighbours(stated, unseen, random.uniform(size=4000) < 0.5 * stated)
+    sobered = fitted_neighbours(stated, shortfall, random.uniform(size=4000) < 0.5 * stated)
     assert sobered[0] < found[0] - 0.5
-    blinded = fitted_neighbours(stated, unseen, random.uniform(size=4000) < np.where(unseen > 0, 0.5, 1) * stated)
-    assert blinded[2] < found[2] - 3.0
+    half_blind = random.uniform(size=4000) < np.where(shortfall > 0, 0.5, 1) * stated
+    for free in (range(3), [2]):
+        blinded = fitted_neighbours(stated, shortfall, half_blind, free)
+        assert blinded[2] < found[2] - 3.0
+    assert blinded[:2] == list(NEIGHBOURS[:2])
 
 
 def test_what_is_not_seen_speaks_for_none_of_them() -> None:
     weights = (1.0, 0.0, 0.0, -1.0, 1.0, 10.0)
-    wide, narrow = candidates([2.0, 0.0], right=0), candidates([2.0, 0.0], right=0, unseen_share=0.2)
+    wide, narrow = candidates([2.0, 0.0], right=0), candidates([2.0, 0.0], right=0, view_shortfall=0.2)
     assert narrow.likelihood(weights) < wide.likelihood(weights) - 0.1
 
 
@@ -123,7 +126,7 @@ if '--trace' in words:
         return dict(pose=[x_m, 0.0, 0.0], score=score, covariance=COVARIANCE, for_it=3.0 - x_m, against_it=x_m)
     record = dict(record='revision', reference=1, query=2, hypotheses=[hypothesis(2.0, 1.0), hypothesis(1.0, 0.0)],
                   in_map=0, alternative=1, probability=0.75)
-    links = [dict(record='link', reference=k - 1, query=k, unseen_share=0.1) for k in range(1, len(positions))]
+    links = [dict(record='link', reference=k - 1, query=k, view_shortfall=0.1) for k in range(1, len(positions))]
     with open(words[words.index('--trace') + 1], 'w') as trace:
         for line in [dict(record='run'), *links, record]:
             trace.write(json.dumps(line, separators=(',', ':')) + chr(10))
@@ -138,7 +141,9 @@ def test_the_program_holds_what_is_stated_against_the_truth(tmp_path: Path, caps
     assert "| 0.9 to 0.95 | 5 | 100.0 % | 90.0 % |" in out
     assert "1 links in doubt" in out
     assert "| 0.7 to 0.8 | 1 | 100.0 % | 75.0 % |" in out
-    assert json.loads((tmp_path / "out.json").read_text(encoding="utf-8"))[0]["stated"] == [[0.75, True]]
+    found = json.loads((tmp_path / "out.json").read_text(encoding="utf-8"))[0]
+    assert found["lone"] == [[0.9, 0.1, True]] * 5
+    assert found["stated"] == [[0.75, True]]
 
 
 def test_a_mapper_that_fails_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -33,15 +33,15 @@ double match_probability(const PoseHypothesis& best, double margin) {
   return probability_of(std::min(log_odds, lead));
 }
 
-double probability_of_neighbours(double match_probability, double unseen_share) {
+double probability_of_neighbours(double match_probability, double view_shortfall) {
   constexpr double kLeast = 1e-9;  // the logarithm stays finite
   const double match = log_odds_of(std::clamp(match_probability, kLeast, 1.0 - kLeast));
   // Logistic regression on links of thinned logs that no loop holds, and of hard scenes: scripts/fit_links.py.
-  return probability_of(3.0 + 0.48 * match - 10.0 * unseen_share);
+  return probability_of(3.0 + 0.48 * match - 12.0 * view_shortfall);
 }
 
-double unseen_share(const ScanView& a, const ScanView& b) {
-  constexpr double kEnough = 0.5;
+double view_shortfall(const ScanView& a, const ScanView& b) {
+  constexpr double kEnough = 0.45;  // half a circle has some slack
   return std::max(0.0, kEnough - std::min(a.seen_share, b.seen_share));
 }
 

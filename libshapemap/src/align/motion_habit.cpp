@@ -19,9 +19,12 @@ constexpr double kAngleKernel_rad = 12 * kDegree;
 /// The direction of a step tells the more, the longer it is, up to this length.
 constexpr double kHasDirection_m = 0.5;
 
-/// The share of motions of a kind that was never seen before: this among many, half where so few are known.
+/// The share of motions of a kind that was never seen before falls as kinds become more like the root of the number of
+/// motions (the law of Heaps, 1978), and no further than this.
 constexpr double kLeastUnheard = 0.03;
-constexpr double kFew = 2.0;
+double share_of_unheard(std::size_t num_known) {
+  return num_known == 0 ? 1.0 : std::max(kLeastUnheard, 0.5 / std::sqrt(static_cast<double>(num_known)));
+}
 
 std::size_t step_bin(double step_m) {
   return std::min(static_cast<std::size_t>(std::min(step_m, 1e3) / kStepBin_m), kStepBins - 1);
@@ -106,8 +109,7 @@ std::vector<double> density_of_angles(const std::vector<WeightedAngle>& angles) 
 }  // namespace
 
 MotionHabit::MotionHabit(const std::vector<Pose2>& known_motions)
-    : share_of_unheard_(std::max(kLeastUnheard, kFew / (kFew + static_cast<double>(known_motions.size())))),
-      by_step_(density_of_steps(known_motions)) {
+    : share_of_unheard_(share_of_unheard(known_motions.size())), by_step_(density_of_steps(known_motions)) {
   std::vector<WeightedAngle> directions;
   std::vector<WeightedAngle> turns;
   for (const Pose2& motion : known_motions) {

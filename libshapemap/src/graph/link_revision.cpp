@@ -31,7 +31,7 @@ constexpr double kLeastScore = -12.0;  ///< however badly two scans go together 
 constexpr double kByOthers = 2.9;
 constexpr double kOfMap = 1.2;  ///< the whole map was asked already
 constexpr double kNoneOfThem = -5.6;
-constexpr double kUnseen = 20.0;  ///< the less two scans see, the likelier it is none of them
+constexpr double kPerShortfall = 25.0;  ///< the less two scans see, the likelier it is none of them
 
 double worth(const DoubtfulLink& doubt, std::size_t k, const Balance& said_by_others) {
   return kPerScore * std::max(kLeastScore, doubt.candidates[k].score) + kByOthers * said_by_others.value() +
@@ -58,7 +58,7 @@ RevisedLink verdict_by(const std::vector<double>& worths, const DoubtfulLink& do
   std::stable_sort(order.begin(), order.end(), [&](std::size_t j, std::size_t k) { return worths[j] > worths[k]; });
   const DoubtfulLink::Candidate& best = candidates[order.front()];
   double right = 0.0;
-  double all = std::exp(kNoneOfThem + kUnseen * doubt.unseen_share - worths[order.front()]);
+  double all = std::exp(kNoneOfThem + kPerShortfall * doubt.view_shortfall - worths[order.front()]);
   std::vector<Pose2> places;
   for (const std::size_t k : order) {
     const Pose2& pose = candidates[k].a_from_b;

@@ -178,9 +178,12 @@ Json alignment_json(const TracedAlignment& alignment, LcsTarget target) {
 }
 
 Json link_json(const TracedLink& link) {
-  return {
-      {"record", "link"},        {"reference", link.reference_index}, {"query", link.query_index},
-      {"num_own", link.num_own}, {"unseen_share", link.unseen_share}, {"hypotheses", hypotheses_json(link.hypotheses)}};
+  return {{"record", "link"},
+          {"reference", link.reference_index},
+          {"query", link.query_index},
+          {"num_own", link.num_own},
+          {"view_shortfall", link.view_shortfall},
+          {"hypotheses", hypotheses_json(link.hypotheses)}};
 }
 
 Json choice_json(const TracedChoice& choice) {

@@ -56,15 +56,15 @@ double link_probability(const KeyframeLink& link) {
 double stated_probability(const KeyframeLink& link) {
   if (link.revised) return link.revised->probability;
   if (link.settled_covariance || link.hypotheses.empty()) return link_probability(link);
-  return probability_of_neighbours(link_probability(link), link.unseen_share);
+  return probability_of_neighbours(link_probability(link), link.view_shortfall);
 }
 
 MotionHabit motion_habit(const KeyframeChain& chain) {
-  constexpr double kCertain = 0.9;
+  constexpr double kCertain = 0.98;
   constexpr double kHeld_m = 0.2;
   std::vector<Pose2> motions;
   for (const KeyframeLink& link : chain.links) {
-    if (link.settled_covariance || link_probability(link) < kCertain) continue;
+    if (link.settled_covariance || stated_probability(link) < kCertain) continue;
     const PoseHypothesis& chosen = link.hypotheses[link.choice.alternative];
     if (worst_deviation_m(pose_covariance(chosen.fit)) < kHeld_m) motions.push_back(chosen.ref_from_query);
   }

@@ -48,9 +48,9 @@ struct RevisedChoice {
 struct KeyframeLink {
   std::vector<PoseHypothesis> hypotheses;  ///< none: another log starts here, or nothing fits
   std::vector<std::vector<double>> bonus;  ///< [hypothesis][that of the next link]: how well the two go together
-  std::size_t num_own = 0;    ///< so many, the first, are the best first; the rest is by way of scans further back
-  double unseen_share = 0.0;  ///< of the two scans; 0 where a motion was expected: the true place is then looked for
-  bool is_complete = false;   ///< nothing more will be looked for until all is known
+  std::size_t num_own = 0;      ///< so many, the first, are the best first; the rest is by way of scans further back
+  double view_shortfall = 0.0;  ///< of the two scans; 0 where a motion was expected: the true place is then looked for
+  bool is_complete = false;     ///< nothing more will be looked for until all is known
   Choice choice;
   std::optional<RevisedChoice> revised;
   /// Keyframes between the two were retired, see retire_keyframes(): there is one hypothesis, which is that of the map

@@ -116,7 +116,7 @@ class LinkDoubts {
     piece_ = connected_parts(views_.size(), sure);
     for (const std::size_t i : doubtful) {
       if (piece_[i] == piece_[i + 1]) continue;
-      doubts_.push_back({{i, {}, chain_.links[i].unseen_share}, hypothesis_in_map(i), {}});
+      doubts_.push_back({{i, {}, chain_.links[i].view_shortfall}, hypothesis_in_map(i), {}});
     }
   }
 

@@ -24,8 +24,9 @@ void judge_link(const Log& log, const KeyframeChain& chain, const KeyframeMap& m
   if (!is_first_choice) margin = hypotheses[taken].score - hypotheses[choice.alternative].score;
   std::optional<double> probability;
   if (!hypotheses.empty()) {
-    probability = of.revised ? of.revised->probability
-                             : probability_of_neighbours(match_probability(hypotheses[taken], margin), of.unseen_share);
+    probability = of.revised
+                      ? of.revised->probability
+                      : probability_of_neighbours(match_probability(hypotheses[taken], margin), of.view_shortfall);
   }
   outcome.alignment = judged(hypotheses, taken, margin, options, probability);
   outcome.reason = outcome.alignment.reason;

@@ -68,7 +68,7 @@ void MapFollower::expect(std::size_t b) {
 bool MapFollower::link_exists(std::size_t b) const { return map_.link_choice[b - 1] != kCut; }
 
 bool MapFollower::is_in_doubt(std::size_t b) const {
-  return link_exists(b) && link_probability(chain_.links[b - 1]) < kSureLink;
+  return link_exists(b) && stated_probability(chain_.links[b - 1]) < kSureLink;
 }
 
 /// False when the robot cannot be where it is expected.

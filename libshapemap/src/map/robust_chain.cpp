@@ -154,8 +154,8 @@ void RobustChain::link_keyframes(std::size_t first_new) {
     if (chain_.keyframes[first + i].expected) {
       expect(*chain_.keyframes[first + i].expected, first + i - 1);
     } else {
-      chain_.links[first + i - 1].unseen_share =
-          unseen_share(view_of_keyframe(first + i - 1), view_of_keyframe(first + i));
+      chain_.links[first + i - 1].view_shortfall =
+          view_shortfall(view_of_keyframe(first + i - 1), view_of_keyframe(first + i));
     }
   }
   result_.times.align_s += timed_for(count, [&](std::size_t i) {
@@ -198,7 +198,7 @@ void RobustChain::expect_the_usual() {
     KeyframeLink& link = chain_.links[i];
     link.is_complete = true;
     if (sink_ && !link.hypotheses.empty()) {
-      sink_->on_link({position_of(i), position_of(i + 1), link.hypotheses, link.num_own, link.unseen_share});
+      sink_->on_link({position_of(i), position_of(i + 1), link.hypotheses, link.num_own, link.view_shortfall});
     }
   }
 }

@@ -61,7 +61,7 @@ std::vector<bool> settled_keyframes(const Log& log, const KeyframeChain& chain, 
   const std::size_t count = chain.keyframes.size();
   std::vector<bool> sure(chain.links.size());
   for (std::size_t i = 0; i < sure.size(); ++i) {
-    sure[i] = map.link_choice[i] != kCut && (map.held_by_loops[i] || link_probability(chain.links[i]) >= kSureLink);
+    sure[i] = map.link_choice[i] != kCut && (map.held_by_loops[i] || stated_probability(chain.links[i]) >= kSureLink);
   }
   std::vector<bool> settled(count, false);
   for (std::size_t i = 1; i + kKeyframesInUse < count; ++i) {

@@ -18,7 +18,7 @@ namespace shapemap {
 inline constexpr std::size_t kKeyframesInUse = 16;
 
 /// A link this probable is as good as one that loops hold.
-inline constexpr double kSureLink = 0.97;
+inline constexpr double kSureLink = 0.99;
 
 /// Two scans of one place must put each other where the map has them.
 inline constexpr double kAsInMap_m = 0.25;

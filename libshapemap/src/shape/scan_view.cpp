@@ -66,11 +66,14 @@ double reach_m(const std::vector<RangeImage>& images) {
 }
 
 /// Of sectors, wide enough for beams that are lost one by one not to matter.
-double seen_share(const std::vector<ShapePoint>& points) {
+double seen_share(const std::vector<ShapePoint>& points, const std::vector<RangeImage>& images) {
   constexpr std::size_t kSectors = 36;
   std::bitset<kSectors> seen;
+  std::vector<Point2> sensors_m;
+  for (const RangeImage& image : images) sensors_m.push_back(inverse(image.sensor_from_robot).translation());
   for (const ShapePoint& point : points) {
-    const double turns = std::atan2(point.p_m.y(), point.p_m.x()) / (2.0 * kPi);
+    const Point2 from_sensor_m = point.p_m - sensors_m[static_cast<std::size_t>(point.sub_scan)];
+    const double turns = std::atan2(from_sensor_m.y(), from_sensor_m.x()) / (2.0 * kPi);
     const auto sector = static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(kSectors));
     seen.set(std::min(sector, kSectors - 1));
   }
@@ -97,7 +100,7 @@ ScanView view_of(const Position& position, const ReturnOptions& returns, const P
   }
   view.tangents = tangent_histogram(all);
   view.reach_m = reach_m(view.images);
-  view.seen_share = seen_share(all);
+  view.seen_share = seen_share(all, view.images);
 
   const auto max_points = static_cast<std::size_t>(options.max_points);
   const std::size_t step = std::max<std::size_t>(1, (all.size() + max_points - 1) / max_points);

@@ -155,17 +155,17 @@ TEST(ProbabilityOfNeighbours, FallsWithWhatTheyDoNotSee) {
   }
 }
 
-TEST(UnseenShare, IsOfTheScanThatSeesLess) {
+TEST(ViewShortfall, IsOfTheScanThatSeesLess) {
   test::Scanner narrow = test::half_circle();
   narrow.num_beams = 91;
   narrow.view_rad = 91 * kDegree;
   const ScanView all = test::view_from(test::cluttered_room(1), {});
   const ScanView quarter = test::view_from(test::cluttered_room(1), {}, narrow);
   const ScanView half = test::view_from(test::cluttered_room(1), {}, test::half_circle());
-  EXPECT_EQ(unseen_share(all, all), 0.0);
-  EXPECT_NEAR(unseen_share(all, half), 0.0, 0.03);
-  EXPECT_NEAR(unseen_share(all, quarter), 0.25, 0.03);
-  EXPECT_EQ(unseen_share(quarter, half), unseen_share(half, quarter));
+  EXPECT_EQ(view_shortfall(all, all), 0.0);
+  EXPECT_EQ(view_shortfall(all, half), 0.0);
+  EXPECT_NEAR(view_shortfall(all, quarter), 0.2, 0.03);
+  EXPECT_EQ(view_shortfall(quarter, half), view_shortfall(half, quarter));
 }
 
 }  // namespace

@@ -52,6 +52,12 @@ TEST(MotionHabit, TellsTheMoreTheMoreIsKnownAndNeverMuch) {
   EXPECT_LT(before, 12.0);
 }
 
+TEST(MotionHabit, OfNineMotionsOneInSixWouldBeOfANewKind) {
+  std::mt19937 rng(2);
+  const double surprise = MotionHabit(of_a_robot(9, rng)).surprise({-6.0, 0.0, 180 * kDegree});
+  EXPECT_NEAR(surprise, 3.0 * std::log(6.0), 0.3);
+}
+
 /// One that turns as it likes and goes any way is surprised by none of that.
 TEST(MotionHabit, LearnsLittleOfAnyMotion) {
   std::mt19937 rng(3);

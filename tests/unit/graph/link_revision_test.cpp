@@ -163,7 +163,7 @@ TEST(ReviseLinks, IsLessSureOfScansThatSeeLittle) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
   const double sure = map.revised().links[0].probability;
-  map.doubts[0].unseen_share = 0.3;
+  map.doubts[0].view_shortfall = 0.3;
   EXPECT_LT(map.revised().links[0].probability, sure - 0.05);
 }
 

@@ -153,7 +153,7 @@ TEST_F(TraceOfAWalk, HasTheAlternativesOfTheRobustMethod) {
     EXPECT_EQ(chosen["covariance"], result["covariance"]);
     EXPECT_EQ(chosen["pose"], result["ref_from_query"]);
     EXPECT_GT(result["probability"], 0.0);
-    EXPECT_EQ(traced["link"][k]["unseen_share"], 0.0) << "the laser looks all round";
+    EXPECT_EQ(traced["link"][k]["view_shortfall"], 0.0) << "the laser looks all round";
   }
 }
 

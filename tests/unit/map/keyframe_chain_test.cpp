@@ -105,7 +105,7 @@ TEST(StatedProbability, IsLessOfScansThatSeeLittle) {
   KeyframeLink link = sliding_link().links[0];
   link.choice.margin = 3.0;
   const double all_round = stated_probability(link);
-  link.unseen_share = 0.25;
+  link.view_shortfall = 0.25;
   EXPECT_LT(log_odds_of(stated_probability(link)), log_odds_of(all_round) - 1.0);
 }
 

@@ -94,6 +94,16 @@ TEST(LinkDoubts, WhatAllScansSayIsTheProbabilityOfTheLink) {
   EXPECT_FALSE(walk.chain.links[kLink - 1].revised) << "nobody was asked";
 }
 
+TEST(LinkDoubts, ScansThatSeeLittleLeaveMoreDoubt) {
+  const auto doubt = [](double view_shortfall) {
+    CutForALoop walk(5.0);
+    walk.chain.links[kLink].view_shortfall = view_shortfall;
+    walk.revise();
+    return 1.0 - walk.chain.links[kLink].revised.value().probability;
+  };
+  EXPECT_GT(doubt(0.2), 5.0 * doubt(0.0));
+}
+
 TEST(LinkDoubts, NothingIsStatedOfALinkWhereTheObserverAskedToStop) {
   struct Impatient : RunObserver {
     bool keep_going() override { return false; }

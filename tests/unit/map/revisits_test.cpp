@@ -211,7 +211,7 @@ TEST(Revisits, GetLostWhereSomethingElseIsSeen) {
   known.chain.links[kWrong - 1].hypotheses = known.chain.links[kWrong - 2].hypotheses;  // sure by what it seems to be
   known.chain.links[kWrong - 1].hypotheses.front().ref_from_query =
       inverse(laps.truth[kWrong - 1]) * laps.truth[kWrong] * Pose2{0.7, 0.0, 5 * kDegree};
-  ASSERT_GE(link_probability(known.chain.links[kWrong - 1]), kSureLink);
+  ASSERT_GE(stated_probability(known.chain.links[kWrong - 1]), kSureLink);
   const Revisits::Followed result = followed(laps, known);
   EXPECT_LE(result.num_followed, kWrong + 2);
   EXPECT_EQ(num_known(result, kWrong), 0U);

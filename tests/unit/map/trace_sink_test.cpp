@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "shapemap/align/confidence.hpp"
 #include "shapemap/map/map_log.hpp"
 #include "support/matchers.hpp"
 #include "support/synthetic_world.hpp"
@@ -40,7 +41,7 @@ MappingOptions options_of(Method method) {
 struct Recorder : TraceSink {
   struct Link {
     std::size_t reference, query, num_own;
-    double unseen_share;
+    double view_shortfall;
     std::vector<PoseHypothesis> hypotheses;
   };
   void on_shape(std::size_t index, const std::vector<ShapePoint>& points) override {
@@ -54,7 +55,7 @@ struct Recorder : TraceSink {
     queries.push_back(shown.query_index);
   }
   void on_link(const TracedLink& l) override {
-    links.push_back({l.reference_index, l.query_index, l.num_own, l.unseen_share, l.hypotheses});
+    links.push_back({l.reference_index, l.query_index, l.num_own, l.view_shortfall, l.hypotheses});
   }
   void on_choice(const TracedChoice& choice) override { choices.push_back(choice); }
 
@@ -135,7 +136,7 @@ TEST(TraceSink, SeesWhatTheRobustMethodChoosesFrom) {
   }
 }
 
-TEST(TraceSink, SeesHowLittleNarrowScansSee) {
+TEST(TraceSink, SeesHowLittleNarrowScansSeeAndThatCountsInTheResult) {
   test::Scanner narrow;
   narrow.num_beams = 91;
   narrow.view_rad = 91 * kDegree;
@@ -143,10 +144,17 @@ TEST(TraceSink, SeesHowLittleNarrowScansSee) {
   for (const double x_m : {0.0, 0.15}) {
     log.positions.push_back(test::scan_of(test::cluttered_room(2), {x_m, 0.0, 0.0}, narrow));
   }
+  MappingOptions options = options_of(Method::kRobust);
+  options.link_revision.doubt_below = 0.0;  // judged by the two scans
   Recorder recorder;
-  mapped(log, Method::kRobust, &recorder);
+  RunObserver nobody;
+  const MapResult result = map_log(log, options, nobody, &recorder);
   ASSERT_EQ(recorder.links.size(), 1U);
-  EXPECT_NEAR(recorder.links[0].unseen_share, 0.25, 0.05);
+  const Recorder::Link& link = recorder.links[0];
+  EXPECT_NEAR(link.view_shortfall, 0.2, 0.05);
+  const TracedChoice& choice = recorder.choices.at(0);
+  const double match = match_probability(link.hypotheses.at(choice.alternative), choice.margin);
+  EXPECT_EQ(result.positions[1].alignment.probability, probability_of_neighbours(match, link.view_shortfall));
 }
 
 TEST(TraceSink, WhatItThrowsEndsTheRun) {

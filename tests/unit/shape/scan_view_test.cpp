@@ -94,6 +94,15 @@ TEST(ScanView, SeesAShareOfAllDirections) {
   EXPECT_NEAR(test::view_from(test::round_room(3.0), {}, test::half_circle()).seen_share, 0.5, 0.03);
 }
 
+/// A laser at the front of a robot sees no less for it.
+TEST(ScanView, SeesAsMuchWhereverItIsMounted) {
+  std::mt19937 rng(1);
+  Position position = test::scan_of(test::round_room(3.0), {}, test::half_circle(), rng);
+  const double here = test::view_of(position).seen_share;
+  for (SubScan& sub_scan : position.sub_scans) sub_scan.robot_from_sensor.x_m += 1.5;
+  EXPECT_EQ(test::view_of(position).seen_share, here);
+}
+
 TEST(ScanView, OfNoReturnsIsEmpty) {
   for (const Position& position : {test::blind_position(), Position{}}) {
     const ScanView view = test::view_of(position);

@@ -16,12 +16,13 @@ double probability_of(double log_odds);
 double match_probability(const PoseHypothesis& best, double margin);
 
 /// The same of two scans that follow each other, by what match_probability() says: it allows for scans of two different
-/// places, which neighbours are not. See unseen_share().
-double probability_of_neighbours(double match_probability, double unseen_share);
+/// places, which neighbours are not. See view_shortfall().
+double probability_of_neighbours(double match_probability, double view_shortfall);
 
-/// How much of all directions the one of two scans that sees less of them falls short of half. The less each sees, the
-/// likelier the two share nothing that tells where they are, and the true place is none of those that are found.
-double unseen_share(const ScanView& a, const ScanView& b);
+/// How far the one of two scans that sees less falls short of 0.45 of all directions (ScanView::seen_share). The less
+/// each sees, the likelier the two share nothing that tells where they are, and the true place is none of those that
+/// are found. What that is worth is known of lasers with 100 degrees of view and more.
+double view_shortfall(const ScanView& a, const ScanView& b);
 
 /// The margin that stands for "there is no other place".
 inline constexpr double kFullMargin = 20.0;

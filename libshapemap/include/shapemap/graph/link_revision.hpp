@@ -35,7 +35,7 @@ struct DoubtfulLink {
   };
   std::size_t link = 0;
   std::vector<Candidate> candidates;  ///< at least one
-  double unseen_share = 0.0;          ///< of the two scans: see unseen_share() in confidence.hpp
+  double view_shortfall = 0.0;        ///< of the two scans: see view_shortfall() in confidence.hpp
 };
 
 /// What all other pairs of scans of two pieces say of a place, by MapEvidence. They do not tell independently of each

@@ -34,8 +34,8 @@ struct TracedLink {
   std::size_t reference_index = 0;
   std::size_t query_index = 0;
   const std::vector<PoseHypothesis>& hypotheses;
-  std::size_t num_own = 0;    ///< so many, the first, are the best first; the rest is by way of scans further back
-  double unseen_share = 0.0;  ///< unseen_share() of the two scans; 0 where a motion was expected
+  std::size_t num_own = 0;      ///< so many, the first, are the best first; the rest is by way of scans further back
+  double view_shortfall = 0.0;  ///< view_shortfall() of the two scans; 0 where a motion was expected
 };
 
 /// What it chose, looking at the whole log.

@@ -42,7 +42,7 @@ struct ScanView {
   TangentHistogram tangents{};     ///< smoothed over a few degrees
   PointIndex index{{}};            ///< of `points`
   double reach_m = 0.0;            ///< nine of ten returns are nearer
-  double seen_share = 0.0;         ///< of all directions from the robot, those with a surface
+  double seen_share = 0.0;         ///< of all directions from the sensor, those with a surface
 
   std::size_t size() const { return points.size(); }
 };
