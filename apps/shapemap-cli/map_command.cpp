@@ -56,8 +56,8 @@ MapResult map_and_trace(const LogSet& logs, const MapArguments& arguments, std::
   return result;
 }
 
-int exit_code(const LogSet& logs, const MapResult& result) {
-  if (interrupted()) return kExitInterrupted;
+int exit_code(const LogSet& logs, const MapResult& result, bool was_interrupted) {
+  if (was_interrupted) return kExitInterrupted;
   return unplaced_lines(logs, result).empty() ? kExitOk : kExitIncomplete;
 }
 
@@ -96,9 +96,10 @@ int run_map(const MapArguments& arguments) {
                                   settings.grid, warnings, costs}));
   }
   outputs.commit(IfInterrupted::kWriteAll);
-  if (interrupted() && !result.interrupted) print_lines("", {"interrupted while writing; the map is whole"}, 1);
+  const bool was_interrupted = interrupted();  // what is told and the exit code say the same, whatever comes now
+  if (was_interrupted && !result.interrupted) print_lines("", {"interrupted while writing; the map is whole"}, 1);
   print_summary(arguments, logs, result, warnings, costs);
-  return exit_code(logs, result);
+  return exit_code(logs, result, was_interrupted);
 }
 
 }  // namespace shapemap::cli
