@@ -71,7 +71,7 @@ class Links:
 
 
 def view_shortfalls(trace: Path) -> dict[tuple[int, int], float]:
-    """By the positions of a link, as it was when it was searched."""
+    """By the positions of a link; one whose keyframes in between were let go is missing, and certain."""
     with trace.open(encoding="utf-8") as lines:
         records = [json.loads(line) for line in lines if line.startswith('{"record":"link"')]
     return {(record["reference"], record["query"]): float(record["view_shortfall"]) for record in records}
@@ -87,8 +87,8 @@ def lone_links(
             continue
         step = compose(inverse(truth[alignment["reference"]]), truth[position["index"]])
         found = pose_from(alignment["ref_from_query"])
-        share = shortfall.get((alignment["reference"], position["index"]), 0.0)
-        links.append((float(alignment["probability"]), share, is_place(found, step)))
+        lacking = shortfall.get((alignment["reference"], position["index"]), 0.0)
+        links.append((float(alignment["probability"]), lacking, is_place(found, step)))
     return links
 
 
@@ -134,8 +134,8 @@ def links_of(write: Callable[[Path], Path], truth: Array, mapper: Mapper) -> Lin
             if not line.startswith('{"record":"revision"'):
                 continue
             revision = json.loads(line)
-            share = shortfall.get((revision["reference"], revision["query"]), 0.0)
-            links.revised.append(candidates_of(revision, share, truth))
+            lacking = shortfall.get((revision["reference"], revision["query"]), 0.0)
+            links.revised.append(candidates_of(revision, lacking, truth))
             links.stated.append((float(revision["probability"]), best_is_right(revision, truth)))
         return links
 

@@ -112,7 +112,7 @@ def test_the_mapper_finds_scans_of_a_crowd_and_no_others() -> None:
     assert outcome.fault == ""
     spoilt = [s for s in outcome.scans if s.spoilt]
     assert len(outcome.scans) >= 50
-    assert len(spoilt) >= 6  # of nine; some are in no piece, or not in the largest
+    assert len(spoilt) >= 8
     assert sum(s.flagged for s in spoilt) >= 0.7 * len(spoilt)
     assert not any(s.flagged for s in outcome.scans if s.clean)
 

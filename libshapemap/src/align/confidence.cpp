@@ -36,7 +36,8 @@ double match_probability(const PoseHypothesis& best, double margin) {
 double probability_of_neighbours(double match_probability, double view_shortfall) {
   constexpr double kLeast = 1e-9;  // the logarithm stays finite
   const double match = log_odds_of(std::clamp(match_probability, kLeast, 1.0 - kLeast));
-  // Logistic regression on links of thinned logs that no loop holds, and of hard scenes: scripts/fit_links.py.
+  // Logistic regression on links that no loop holds, of thinned logs and simulated arenas; the last weight on those of
+  // hard scenes: scripts/fit_links.py.
   return probability_of(3.0 + 0.48 * match - 12.0 * view_shortfall);
 }
 

@@ -31,7 +31,7 @@ constexpr double kLeastScore = -12.0;  ///< however badly two scans go together 
 constexpr double kByOthers = 2.9;
 constexpr double kOfMap = 1.2;  ///< the whole map was asked already
 constexpr double kNoneOfThem = -5.6;
-constexpr double kPerShortfall = 25.0;  ///< the less two scans see, the likelier it is none of them
+constexpr double kPerShortfall = 25.0;  ///< the less two scans see, the likelier; fitted to hard scenes
 
 double worth(const DoubtfulLink& doubt, std::size_t k, const Balance& said_by_others) {
   return kPerScore * std::max(kLeastScore, doubt.candidates[k].score) + kByOthers * said_by_others.value() +

@@ -53,10 +53,14 @@ double link_probability(const KeyframeLink& link) {
   return match_probability(link.hypotheses[link.choice.alternative], link.choice.margin);
 }
 
+double probability_by_two_scans(const KeyframeLink& link, std::size_t k, double margin) {
+  return probability_of_neighbours(match_probability(link.hypotheses[k], margin), link.view_shortfall);
+}
+
 double stated_probability(const KeyframeLink& link) {
   if (link.revised) return link.revised->probability;
   if (link.settled_covariance || link.hypotheses.empty()) return link_probability(link);
-  return probability_of_neighbours(link_probability(link), link.view_shortfall);
+  return probability_by_two_scans(link, link.choice.alternative, link.choice.margin);
 }
 
 MotionHabit motion_habit(const KeyframeChain& chain) {

@@ -72,6 +72,9 @@ PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std
 /// match_probability() of the place that the chain chose; 1 where nothing is asked any more, 0 where there is none.
 double link_probability(const KeyframeLink& link);
 
+/// That hypothesis number `k` of a link is right, by its two scans; `margin` is its score above the best other place.
+double probability_by_two_scans(const KeyframeLink& link, std::size_t k, double margin);
+
 /// That the link is right, by all that is known but loops: what is stated in the end.
 double stated_probability(const KeyframeLink& link);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "link_verdict.hpp"
 
-#include "shapemap/align/confidence.hpp"
 #include "shapemap/graph/loop_closing.hpp"
 #include "shapemap/scan/joined_logs.hpp"
 
@@ -24,9 +23,7 @@ void judge_link(const Log& log, const KeyframeChain& chain, const KeyframeMap& m
   if (!is_first_choice) margin = hypotheses[taken].score - hypotheses[choice.alternative].score;
   std::optional<double> probability;
   if (!hypotheses.empty()) {
-    probability = of.revised
-                      ? of.revised->probability
-                      : probability_of_neighbours(match_probability(hypotheses[taken], margin), of.view_shortfall);
+    probability = of.revised ? of.revised->probability : probability_by_two_scans(of, taken, margin);
   }
   outcome.alignment = judged(hypotheses, taken, margin, options, probability);
   outcome.reason = outcome.alignment.reason;

@@ -147,15 +147,14 @@ void RobustChain::link_keyframes(std::size_t first_new) {
   std::vector<std::vector<PoseHypothesis>> borrowed(count);
   result_.times.align_s += timed_for(count, [&](std::size_t i) { borrowed[i] = borrow_hypotheses(first + i - 1); });
   for (std::size_t i = 0; i < count; ++i) {
-    std::vector<PoseHypothesis>& link = hypotheses(first + i - 1);
-    const std::size_t num_own = link.size();
-    for (const PoseHypothesis& pose : borrowed[i]) add_if_new(pose, link);
-    chain_.links[first + i - 1].num_own = num_own;
-    if (chain_.keyframes[first + i].expected) {
-      expect(*chain_.keyframes[first + i].expected, first + i - 1);
+    const std::size_t b = first + i;
+    KeyframeLink& link = chain_.links[b - 1];
+    link.num_own = link.hypotheses.size();
+    for (const PoseHypothesis& pose : borrowed[i]) add_if_new(pose, link.hypotheses);
+    if (chain_.keyframes[b].expected) {
+      expect(*chain_.keyframes[b].expected, b - 1);
     } else {
-      chain_.links[first + i - 1].view_shortfall =
-          view_shortfall(view_of_keyframe(first + i - 1), view_of_keyframe(first + i));
+      link.view_shortfall = view_shortfall(view_of_keyframe(b - 1), view_of_keyframe(b));
     }
   }
   result_.times.align_s += timed_for(count, [&](std::size_t i) {
