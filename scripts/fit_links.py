@@ -112,8 +112,11 @@ def candidates_of(revision: Mapping[str, Any], view_shortfall: float, truth: Arr
         return np.array([float(hypothesis[name]) for hypothesis in hypotheses])
 
     right = np.array([is_place(pose, step) for pose in poses])
+    covariances = np.array([hypothesis["covariance"] for hypothesis in hypotheses])
+    deviations_m = np.sqrt(np.maximum(0.0, np.linalg.eigvalsh(covariances[:, :2, :2])[:, 0]))
     said = column("for_it"), column("against_it")
-    return Candidates(poses, column("score"), *said, revision["in_map"], right, view_shortfall)
+    of_them = revision["in_map"], right, deviations_m, column("vouched")
+    return Candidates(poses, column("score"), *said, *of_them, view_shortfall)
 
 
 def links_of(write: Callable[[Path], Path], truth: Array, mapper: Mapper) -> Links:

@@ -25,7 +25,7 @@ USUAL_SLIP_M = 0.5
 LEAST_SCORE = -12.0
 
 NEIGHBOURS = (3.0, 0.48, -12.0)  # in use, in probability_of_neighbours(): constant, per log odds, per view shortfall
-REVISION = (0.63, 2.9, 1.2, -5.6, 1.2, 25.0)  # in use, in link_revision.cpp
+REVISION = (0.63, 2.9, 1.2, -5.7, 1.2, 25.0, -0.5, 0.5)  # in use, in link_revision.cpp
 REVISION_TERMS = (
     "score",
     "balance of all others",
@@ -33,6 +33,8 @@ REVISION_TERMS = (
     "none of them",
     "little (in the balance)",
     "none of them, per view shortfall",
+    "how little the two scans hold the place",
+    "a parallel link",
 )
 
 BANDS = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.99, 1.0)
@@ -59,7 +61,8 @@ def slides_to(a_from_b: Array, covariance: Array, place: Array) -> bool:
 @dataclass(frozen=True)
 class Candidates:
     """Of a revised link, one after the other: `poses` `[k, 3]`, `scores`, `for_it` and `against_it` `[k]`; `in_map` is
-    the one that the map had; `right` `[k]` those that are at the true place."""
+    the one that the map had; `right` `[k]` those that are at the true place; `deviations_m` `[k]` how little the two
+    scans hold it, in the direction in which they hold it best; `vouched` `[k]` what a parallel link says for it."""
 
     poses: Array
     scores: Array
@@ -67,6 +70,8 @@ class Candidates:
     against_it: Array
     in_map: int
     right: Bools
+    deviations_m: Array
+    vouched: Array
     view_shortfall: float = 0.0
     same: Bools = field(init=False)  # [k, k]: are one place
 
@@ -75,9 +80,10 @@ class Candidates:
         object.__setattr__(self, "same", same)
 
     def worths(self, weights: Sequence[float]) -> Array:
-        per_score, by_others, of_map, _, little, _ = weights
+        per_score, by_others, of_map, _, little, _, per_loose, by_parallel = weights
         balance = (self.for_it - self.against_it) / (self.for_it + self.against_it + max(little, 1e-6))
         worths = per_score * np.maximum(LEAST_SCORE, self.scores) + by_others * balance
+        worths += per_loose * np.log1p(self.deviations_m) + by_parallel * self.vouched
         worths[self.in_map] += of_map
         return np.asarray(worths)
 
@@ -125,7 +131,7 @@ def best_weights(loss: Callable[[list[float]], float], in_use: Sequence[float], 
         return weights
 
     start = np.array([in_use[k] for k in free])
-    options = {"maxiter": 600, "xatol": 5e-3, "fatol": 1e-6}
+    options = {"maxiter": 1000, "xatol": 5e-3, "fatol": 1e-6}
     return with_free(minimize(lambda values: loss(with_free(values)), start, method="Nelder-Mead", options=options).x)
 
 

@@ -30,7 +30,8 @@ PLACES = np.array([[1.0, 0.0, 0.0], [3.0, 0.0, 0.0], [1.0, 2.0, 1.0], [1.1, 0.1,
 def candidates(scores: list[float], right: int = -1, **columns: Any) -> Candidates:
     """At PLACES, of which number `right` is the true one."""
     count = len(scores)
-    given: dict[str, Any] = {"for_it": np.zeros(count), "against_it": np.zeros(count), "in_map": 0, **columns}
+    nothing = dict.fromkeys(("for_it", "against_it", "deviations_m", "vouched"), np.zeros(count))
+    given: dict[str, Any] = {**nothing, "in_map": 0, **columns}
     is_right = np.array([right >= 0 and is_place(pose, PLACES[right]) for pose in PLACES[:count]], bool)
     return Candidates(PLACES[:count], np.array(scores), right=is_right, **given)
 
@@ -44,15 +45,15 @@ def test_one_place_is_forty_centimetres_and_eight_degrees(pose: list[float], sam
 
 def test_neighbours_are_no_rivals() -> None:
     two, four = candidates([2.0, 0.0]), candidates([2.0, 0.0, -30.0, 2.0])
-    places, shares = four.probabilities((1.0, 0.0, 0.0, -9.0, 1.0, 0.0))
+    places, shares = four.probabilities((1.0, 0.0, 0.0, -9.0, 1.0, 0.0, 0.0, 0.0))
     assert places == [0, 1, 2]
-    assert shares[0] == pytest.approx(two.probabilities((1.0, 0.0, 0.0, -9.0, 1.0, 0.0))[1][0], rel=1e-4)
+    assert shares[0] == pytest.approx(two.probabilities((1.0, 0.0, 0.0, -9.0, 1.0, 0.0, 0.0, 0.0))[1][0], rel=1e-4)
 
 
 def test_it_may_be_none_of_them() -> None:
     bad = candidates([-8.0, -9.0])
-    assert bad.likelihood((1.0, 0.0, 0.0, 0.0, 1.0, 0.0)) > 0.99
-    assert candidates([-8.0, -9.0], right=0).likelihood((1.0, 0.0, 0.0, 0.0, 1.0, 0.0)) < 0.01
+    assert bad.likelihood((1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)) > 0.99
+    assert candidates([-8.0, -9.0], right=0).likelihood((1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)) < 0.01
 
 
 def drawn(weights: tuple[float, ...], count: int) -> list[Candidates]:
@@ -63,6 +64,8 @@ def drawn(weights: tuple[float, ...], count: int) -> list[Candidates]:
         scores = random.uniform(-6, 4, 3)
         said: dict[str, Any] = {name: random.uniform(0, 8, 3) for name in ("for_it", "against_it")}
         said["view_shortfall"] = random.choice([0.0, 0.2, 0.4])
+        said["deviations_m"] = random.choice([0.02, 10.0], 3)
+        said["vouched"] = random.choice([0.0, 5.0], 3)
         unknown = candidates(list(scores), **said)
         places, shares = unknown.probabilities(weights)
         right = random.choice([*places, -1], p=[*shares, 1 - shares.sum()])
@@ -71,11 +74,12 @@ def drawn(weights: tuple[float, ...], count: int) -> list[Candidates]:
 
 
 def test_the_weights_that_made_the_links_are_found() -> None:
-    weights = (1.0, 4.0, 0.5, -3.0, 1.2, 14.0)
+    weights = (1.0, 4.0, 0.5, -3.0, 1.2, 14.0, -0.8, 0.3)
     links = drawn(weights, 500)
     found = fitted_revision(links)
     assert found[:4] == pytest.approx(weights[:4], abs=0.6)
     assert found[5] == pytest.approx(weights[5], abs=3.0)
+    assert found[6:] == pytest.approx(weights[6:], abs=0.25)
     assert mean_log_likelihood(links, found) >= mean_log_likelihood(links, REVISION)
 
 
@@ -95,9 +99,18 @@ def test_what_is_stated_of_lone_links_is_fitted_when_it_is_wrong() -> None:
 
 
 def test_what_is_not_seen_speaks_for_none_of_them() -> None:
-    weights = (1.0, 0.0, 0.0, -1.0, 1.0, 10.0)
+    weights = (1.0, 0.0, 0.0, -1.0, 1.0, 10.0, 0.0, 0.0)
     wide, narrow = candidates([2.0, 0.0], right=0), candidates([2.0, 0.0], right=0, view_shortfall=0.2)
     assert narrow.likelihood(weights) < wide.likelihood(weights) - 0.1
+
+
+def test_what_is_hardly_held_counts_less_and_what_a_parallel_link_says_more() -> None:
+    weights = (1.0, 0.0, 0.0, -1.0, 1.0, 0.0, -0.5, 0.5)
+    plain = candidates([2.0, 2.0], right=0)
+    loose = candidates([2.0, 2.0], right=0, deviations_m=np.array([9.0, 0.0]))
+    vouched = candidates([2.0, 2.0], right=0, vouched=np.array([4.0, 0.0]))
+    assert loose.likelihood(weights) < plain.likelihood(weights) - 0.1
+    assert vouched.likelihood(weights) > plain.likelihood(weights) + 0.1
 
 
 def test_the_table_counts_what_is_right() -> None:
@@ -123,7 +136,8 @@ for position in positions:
                                      ref_from_query=dict(x_m=1.0, y_m=0.0, theta_deg=0.0))
 if '--trace' in words:
     def hypothesis(x_m, score):
-        return dict(pose=[x_m, 0.0, 0.0], score=score, covariance=COVARIANCE, for_it=3.0 - x_m, against_it=x_m)
+        said = dict(for_it=3.0 - x_m, against_it=x_m, vouched=0.0)
+        return dict(pose=[x_m, 0.0, 0.0], score=score, covariance=COVARIANCE, **said)
     record = dict(record='revision', reference=1, query=2, hypotheses=[hypothesis(2.0, 1.0), hypothesis(1.0, 0.0)],
                   in_map=0, alternative=1, probability=0.75)
     links = [dict(record='link', reference=k - 1, query=k, view_shortfall=0.1) for k in range(1, len(positions))]

@@ -11,6 +11,12 @@ namespace {
 /// As far as a position can be off and still be near.
 constexpr double kUnknown_m = 10.0;
 
+/// In the directions in which it is held best and worst.
+Eigen::Vector2d variances_of_place(const Eigen::Matrix3d& covariance) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(Eigen::Matrix2d(covariance.topLeftCorner<2, 2>()))
+      .eigenvalues();
+}
+
 }  // namespace
 
 double lead_of_first(const std::vector<PoseHypothesis>& hypotheses) {
@@ -61,8 +67,11 @@ Eigen::Matrix3d pose_covariance(const LineFit& fit, const LineNoise& noise) {
 }
 
 double worst_deviation_m(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(Eigen::Matrix2d(covariance.topLeftCorner<2, 2>()));
-  return std::sqrt(std::max(0.0, eigen.eigenvalues().maxCoeff()));
+  return std::sqrt(std::max(0.0, variances_of_place(covariance).maxCoeff()));
+}
+
+double best_deviation_m(const Eigen::Matrix3d& covariance) {
+  return std::sqrt(std::max(0.0, variances_of_place(covariance).minCoeff()));
 }
 
 }  // namespace shapemap

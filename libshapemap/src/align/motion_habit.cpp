@@ -16,6 +16,10 @@ constexpr double kAngleBin_rad = 2.0 * kPi / static_cast<double>(kAngleBins);
 constexpr double kStepKernel_m = 0.25;
 constexpr double kAngleKernel_rad = 12 * kDegree;
 
+/// Of short steps, a quarter of what is usual, if so many tell; at least this.
+constexpr std::size_t kTellOfSteps = 20;
+constexpr double kLeastStepKernel_m = 0.05;
+
 /// The direction of a step tells the more, the longer it is, up to this length.
 constexpr double kHasDirection_m = 0.5;
 
@@ -66,11 +70,17 @@ double kernel(std::vector<double> values, double least) {
   return std::max(least, 0.9 * std::min(deviation, middle_half / 1.34) * std::pow(count, -0.2));
 }
 
+double least_step_kernel_m(std::vector<double> steps_m) {
+  if (steps_m.size() < kTellOfSteps) return kStepKernel_m;
+  std::sort(steps_m.begin(), steps_m.end());
+  return std::clamp(0.25 * steps_m[steps_m.size() / 2], kLeastStepKernel_m, kStepKernel_m);
+}
+
 /// Of steps: what would lie below 0 is mirrored there.
 std::vector<double> density_of_steps(const std::vector<Pose2>& motions) {
   std::vector<double> steps_m;
   for (const Pose2& motion : motions) steps_m.push_back(motion.translation().norm());
-  const double kernel_m = kernel(steps_m, kStepKernel_m);
+  const double kernel_m = kernel(steps_m, least_step_kernel_m(steps_m));
   std::vector<double> density(kStepBins, 0.0);
   for (const double step_m : steps_m) {
     for (std::size_t k = 0; k < kStepBins; ++k) {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
+#include "map_pieces.hpp"
 #include "shapemap/core/parallel_for.hpp"
 #include "shapemap/graph/loop_closing.hpp"
 #include "shapemap/graph/map_evidence.hpp"
@@ -29,14 +31,19 @@ constexpr double kSame_rad = 8 * kDegree;
 constexpr double kPerScore = 0.63;
 constexpr double kLeastScore = -12.0;  ///< however badly two scans go together by themselves, others may know better
 constexpr double kByOthers = 2.9;
-constexpr double kOfMap = 1.2;  ///< the whole map was asked already
-constexpr double kNoneOfThem = -5.6;
+constexpr double kOfMap = 1.2;     ///< the whole map was asked already
+constexpr double kPerLoose = 0.5;  ///< a place that the two scans hold in no direction stands for many
+constexpr double kByParallel = 0.5;
+constexpr double kNoneOfThem = -5.7;
 constexpr double kPerShortfall = 25.0;  ///< the less two scans see, the likelier; fitted to hard scenes
 
-double worth(const DoubtfulLink& doubt, std::size_t k, const Balance& said_by_others) {
-  return kPerScore * std::max(kLeastScore, doubt.candidates[k].score) + kByOthers * said_by_others.value() +
+double worth_by_two_scans(const DoubtfulLink& doubt, std::size_t k) {
+  const DoubtfulLink::Candidate& candidate = doubt.candidates[k];
+  return kPerScore * std::max(kLeastScore, candidate.score) - kPerLoose * std::log1p(candidate.best_deviation_m) +
          (k == 0 ? kOfMap : 0.0);
 }
+
+double worth_of_none(const DoubtfulLink& doubt) { return kNoneOfThem + kPerShortfall * doubt.view_shortfall; }
 
 bool is_same(const Pose2& a, const Pose2& b) {
   return (a.translation() - b.translation()).norm() < kSame_m && angle_between(a.theta_rad, b.theta_rad) < kSame_rad;
@@ -58,7 +65,7 @@ RevisedLink verdict_by(const std::vector<double>& worths, const DoubtfulLink& do
   std::stable_sort(order.begin(), order.end(), [&](std::size_t j, std::size_t k) { return worths[j] > worths[k]; });
   const DoubtfulLink::Candidate& best = candidates[order.front()];
   double right = 0.0;
-  double all = std::exp(kNoneOfThem + kPerShortfall * doubt.view_shortfall - worths[order.front()]);
+  double all = std::exp(worth_of_none(doubt) - worths[order.front()]);
   std::vector<Pose2> places;
   for (const std::size_t k : order) {
     const Pose2& pose = candidates[k].a_from_b;
@@ -70,63 +77,73 @@ RevisedLink verdict_by(const std::vector<double>& worths, const DoubtfulLink& do
   }
   // The map has aligned its own to more than these two.
   const std::size_t taken = is_same(best.a_from_b, candidates[0].a_from_b) ? 0 : order.front();
-  return {taken, right / all, false, {}};
+  return {taken, right / all, false, {}, {}};
 }
 
 class Revision {
  public:
-  Revision(const NodeViews& views, std::vector<Pose2> map_from_node, std::vector<std::size_t> piece_of_node,
+  Revision(const NodeViews& views, const std::vector<DoubtfulLink>& doubtful, MapPieces pieces,
            const VisibilityOptions& visibility, int threads)
       : views_(views),
-        poses_(std::move(map_from_node)),
-        piece_(std::move(piece_of_node)),
+        doubtful_(doubtful),
+        pieces_(std::move(pieces)),
         visibility_(visibility),
-        threads_(threads) {}
+        threads_(threads),
+        links_(doubtful.size()),
+        is_stale_(doubtful.size(), 1) {}
 
-  RevisedLink judge(const DoubtfulLink& doubt) const {
-    std::vector<Balance> balances(doubt.candidates.size());
-    parallel_for(balances.size(), threads_,
-                 [&](std::size_t k) { balances[k] = said_by_others(doubt.link, doubt.candidates[k].a_from_b); });
-    std::vector<double> worths;
-    for (std::size_t k = 0; k < balances.size(); ++k) worths.push_back(worth(doubt, k, balances[k]));
-    RevisedLink verdict = verdict_by(worths, doubt);
-    verdict.said_by_others = std::move(balances);
-    return verdict;
-  }
-
-  void join(std::size_t link, const Pose2& a_from_b) {
-    const Pose2 move = moved_by(link, a_from_b);
-    const std::size_t from = piece_[link + 1];
-    for (std::size_t n = 0; n < poses_.size(); ++n) {
-      if (piece_[n] != from) continue;
-      poses_[n] = move * poses_[n];
-      piece_[n] = piece_[link];
+  RevisedMap run(double least_probability, RunObserver& observer) {
+    while (observer.keep_going()) {
+      const std::optional<std::size_t> next = most_probable(least_probability);
+      if (!next) break;
+      join(*next);
     }
-  }
-
-  std::size_t piece_of(std::size_t node) const { return piece_[node]; }
-  void give(RevisedMap& result) && {
-    result.map_from_node = std::move(poses_);
-    result.piece_of_node = std::move(piece_);
+    if (!observer.keep_going()) leave_as_they_were();
+    return {pieces_.map_from_node(), pieces_.piece_of_node(), links_};
   }
 
  private:
-  /// How the piece of the later node moves.
-  Pose2 moved_by(std::size_t link, const Pose2& a_from_b) const {
-    return poses_[link] * a_from_b * inverse(poses_[link + 1]);
+  std::optional<std::size_t> most_probable(double least_probability) {
+    std::optional<std::size_t> best;
+    for (std::size_t d = 0; d < doubtful_.size(); ++d) {
+      if (pieces_.is_joined(doubtful_[d].link)) continue;
+      if (is_stale_[d]) links_[d] = judged(d);
+      is_stale_[d] = 0;
+      if (links_[d].probability < least_probability) continue;
+      if (!best || links_[d].probability > links_[*best].probability) best = d;
+    }
+    return best;
+  }
+
+  RevisedLink judged(std::size_t d) const {
+    const DoubtfulLink& doubt = doubtful_[d];
+    std::vector<Balance> balances(doubt.candidates.size());
+    parallel_for(balances.size(), threads_,
+                 [&](std::size_t k) { balances[k] = said_by_others(doubt.link, doubt.candidates[k].a_from_b); });
+    std::vector<double> vouched = said_by_parallel(d);
+    std::vector<double> worths;
+    for (std::size_t k = 0; k < balances.size(); ++k) {
+      worths.push_back(worth_by_two_scans(doubt, k) + kByOthers * balances[k].value() + kByParallel * vouched[k]);
+    }
+    RevisedLink verdict = verdict_by(worths, doubt);
+    verdict.said_by_others = std::move(balances);
+    verdict.vouched = std::move(vouched);
+    return verdict;
   }
 
   /// By all pairs of scans of the two pieces that a link joins, but for the two of the link.
   Balance said_by_others(std::size_t link, const Pose2& a_from_b) const {
-    const Pose2 move = moved_by(link, a_from_b);
+    const std::vector<Pose2>& poses = pieces_.map_from_node();
+    const std::vector<std::size_t>& piece = pieces_.piece_of_node();
+    const Pose2 move = pieces_.moved_by(link, a_from_b);
     const std::size_t first = link + 1 - std::min(kWindow, link + 1);
-    const std::size_t last = std::min(poses_.size(), link + 1 + kWindow);
+    const std::size_t last = std::min(poses.size(), link + 1 + kWindow);
     Balance balance;
     for (std::size_t a = first; a < last; ++a) {
-      if (piece_[a] != piece_[link]) continue;
+      if (piece[a] != piece[link]) continue;
       for (std::size_t b = first; b < last; ++b) {
-        if (piece_[b] != piece_[link + 1] || (a == link && b == link + 1)) continue;
-        const Pose2 near_from_far = inverse(poses_[a]) * (move * poses_[b]);
+        if (piece[b] != piece[link + 1] || (a == link && b == link + 1)) continue;
+        const Pose2 near_from_far = inverse(poses[a]) * (move * poses[b]);
         if (near_from_far.translation().norm() > kWithin_m) continue;
         balance.add(
             MapEvidence::of_pair(shapemap::visibility(*views_[a], *views_[b], near_from_far, visibility_, kSlack)));
@@ -135,11 +152,81 @@ class Revision {
     return balance;
   }
 
+  /// Of each candidate, how much more than nothing the parallel link says that says most for it. The two do not tell
+  /// independently of each other, so it counts in part.
+  std::vector<double> said_by_parallel(std::size_t d) const {
+    const DoubtfulLink& doubt = doubtful_[d];
+    std::vector<double> said(doubt.candidates.size(), 0.0);
+    for (const std::size_t e : parallel_to(d)) {
+      const DoubtfulLink& other = doubtful_[e];
+      for (std::size_t j = 0; j < other.candidates.size(); ++j) {
+        const Pose2 place = pieces_.carried_to(doubt.link, other.link, other.candidates[j].a_from_b);
+        const double more_than_none = worth_by_two_scans(other, j) - worth_of_none(other);
+        for (std::size_t k = 0; k < said.size(); ++k) {
+          if (is_same(place, doubt.candidates[k].a_from_b)) said[k] = std::max(said[k], more_than_none);
+        }
+      }
+    }
+    return said;
+  }
+
+  std::vector<std::size_t> parallel_to(std::size_t d) const {
+    std::vector<std::size_t> parallel;
+    for (std::size_t e = 0; e < doubtful_.size(); ++e) {
+      const auto [before, after] = std::minmax(doubtful_[d].link, doubtful_[e].link);
+      if (e == d || after - before > kWindow) continue;
+      if (pieces_.are_parallel(doubtful_[d].link, doubtful_[e].link)) parallel.push_back(e);
+    }
+    return parallel;
+  }
+
+  /// With the parallel links that say the same.
+  void join(std::size_t d) {
+    const std::size_t link = doubtful_[d].link;
+    const Pose2 a_from_b = doubtful_[d].candidates[links_[d].candidate].a_from_b;
+    for (const std::size_t e : parallel_to(d)) {
+      const std::optional<std::size_t> same =
+          best_at(doubtful_[e], pieces_.carried_to(doubtful_[e].link, link, a_from_b));
+      if (!same) continue;
+      links_[e].candidate = *same;
+      links_[e].probability = links_[d].probability;
+      links_[e].joins = true;
+    }
+    links_[d].joins = true;
+    pieces_.join(link, a_from_b);
+    const std::vector<std::size_t>& piece = pieces_.piece_of_node();
+    for (std::size_t e = 0; e < doubtful_.size(); ++e) {
+      const std::size_t other = doubtful_[e].link;
+      if (piece[other] == piece[link] || piece[other + 1] == piece[link]) is_stale_[e] = 1;
+    }
+  }
+
+  static std::optional<std::size_t> best_at(const DoubtfulLink& doubt, const Pose2& place) {
+    std::optional<std::size_t> best;
+    for (std::size_t k = 0; k < doubt.candidates.size(); ++k) {
+      if (!is_same(place, doubt.candidates[k].a_from_b)) continue;
+      if (!best || worth_by_two_scans(doubt, k) > worth_by_two_scans(doubt, *best)) best = k;
+    }
+    return best;
+  }
+
+  void leave_as_they_were() {
+    for (std::size_t d = 0; d < doubtful_.size(); ++d) {
+      if (links_[d].joins) continue;
+      links_[d] = {0, 0.0, true, {}, {}};
+      if (!pieces_.is_joined(doubtful_[d].link)) {
+        pieces_.join(doubtful_[d].link, doubtful_[d].candidates.front().a_from_b);
+      }
+    }
+  }
+
   const NodeViews& views_;
-  std::vector<Pose2> poses_;
-  std::vector<std::size_t> piece_;
+  const std::vector<DoubtfulLink>& doubtful_;
+  MapPieces pieces_;
   const VisibilityOptions& visibility_;
   int threads_;
+  std::vector<RevisedLink> links_;
+  std::vector<char> is_stale_;
 };
 
 }  // namespace
@@ -148,40 +235,8 @@ RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node
                         std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulLink>& doubtful,
                         const VisibilityOptions& visibility, double least_probability, int threads,
                         RunObserver& observer) {
-  Revision revision(views, std::move(map_from_node), std::move(piece_of_node), visibility, threads);
-  RevisedMap result;
-  std::vector<RevisedLink>& links = result.links;
-  links.resize(doubtful.size());
-  std::vector<char> is_stale(doubtful.size(), 1);
-  while (observer.keep_going()) {
-    std::size_t next = doubtful.size();
-    for (std::size_t d = 0; d < doubtful.size(); ++d) {
-      if (links[d].joins) continue;
-      if (is_stale[d]) links[d] = revision.judge(doubtful[d]);
-      is_stale[d] = 0;
-      if (links[d].probability < least_probability) continue;
-      if (next == doubtful.size() || links[d].probability > links[next].probability) next = d;
-    }
-    if (next == doubtful.size()) break;
-    const std::size_t link = doubtful[next].link;
-    links[next].joins = true;
-    revision.join(link, doubtful[next].candidates[links[next].candidate].a_from_b);
-    for (std::size_t d = 0; d < doubtful.size(); ++d) {
-      const std::size_t joined = revision.piece_of(link);
-      if (revision.piece_of(doubtful[d].link) == joined || revision.piece_of(doubtful[d].link + 1) == joined) {
-        is_stale[d] = 1;
-      }
-    }
-  }
-  if (!observer.keep_going()) {
-    for (std::size_t d = 0; d < doubtful.size(); ++d) {
-      if (links[d].joins) continue;
-      links[d] = {0, 0.0, true, {}};
-      revision.join(doubtful[d].link, doubtful[d].candidates.front().a_from_b);
-    }
-  }
-  std::move(revision).give(result);
-  return result;
+  MapPieces pieces(std::move(map_from_node), std::move(piece_of_node));
+  return Revision(views, doubtful, std::move(pieces), visibility, threads).run(least_probability, observer);
 }
 
 }  // namespace shapemap

@@ -199,6 +199,7 @@ Json revision_json(const TracedRevision& revision) {
   for (std::size_t k = 0; k < revision.said_by_others.size(); ++k) {
     hypotheses[k]["for_it"] = revision.said_by_others[k].for_it;
     hypotheses[k]["against_it"] = revision.said_by_others[k].against_it;
+    hypotheses[k]["vouched"] = revision.vouched[k];
   }
   return {{"record", "revision"},
           {"reference", revision.reference_index},

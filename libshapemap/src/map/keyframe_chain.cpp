@@ -39,6 +39,10 @@ double margin_to_other_places(const KeyframeChain& chain, std::size_t link) {
 
 }  // namespace
 
+double surprise(const Keyframe& keyframe, const MotionHabit& habit, const Pose2& found) {
+  return keyframe.expected ? surprise(*keyframe.expected, found) : habit.surprise(found);
+}
+
 PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std::size_t k) {
   const KeyframeLink& of = chain.links[link];
   const PoseHypothesis& pose = of.hypotheses[k];

@@ -7,16 +7,13 @@
 #include <vector>
 
 #include "chain_smoothing.hpp"
+#include "motion_expectation.hpp"
 #include "shapemap/align/pose_hypothesis.hpp"
 #include "shapemap/align/robust_align.hpp"
 #include "shapemap/graph/link_revision.hpp"
 #include "shapemap/graph/pose_graph.hpp"
 
 namespace shapemap {
-
-/// Where scans follow each other closely, the next one is usually so near to where it was to be expected.
-inline constexpr double kUsualSurprise_m = 0.4;
-inline constexpr double kUsualSurprise_rad = 25 * kDegree;
 
 /// Where nothing is expected, a step is what the scans say, give or take this much.
 inline constexpr double kUsualSlip_m = 0.5;
@@ -26,7 +23,7 @@ inline constexpr double kUsualSlip_rad = 180 * kDegree;
 struct Keyframe {
   std::size_t position_index = 0;
   std::shared_ptr<const ScanView> view;
-  std::optional<Pose2> expected;  ///< in the frame of the keyframe before; see KeyframeTracker::expected()
+  std::optional<ExpectedPose> expected;  ///< see KeyframeTracker::expected()
 };
 
 /// A scan that a keyframe stands for: taken from nearly the same place.
@@ -42,6 +39,7 @@ struct RevisedChoice {
   double probability = 0.0;             ///< that it is right
   std::size_t in_map = 0;               ///< the hypothesis that the map had until then
   std::vector<Balance> said_by_others;  ///< of each hypothesis
+  std::vector<double> vouched;          ///< of each hypothesis: see RevisedLink
 };
 
 /// What a keyframe may be to the one before it, and which of it the scans around choose.
@@ -63,6 +61,10 @@ struct KeyframeChain {
   std::vector<AttachedScan> attached;
   std::vector<KeyframeLink> links;  ///< links[i] joins keyframe i to keyframe i + 1
 };
+
+/// As logarithm of odds against it, of a keyframe that is found there, seen from the one before it: by habit where
+/// nothing was to be expected.
+double surprise(const Keyframe& keyframe, const MotionHabit& habit, const Pose2& found);
 
 /// What hypothesis number `k` of a link says. It is held at least as well as a motion is usually known before, best
 /// where scans follow each other closely, whichever hypothesis: none must be taken for being held less, and a corridor

@@ -31,22 +31,27 @@ bool can_stand_for(const PoseHypothesis& pose) {
 
 void KeyframeTracker::start(std::shared_ptr<const ScanView> keyframe) {
   keyframe_ = std::move(keyframe);
+  if (!keyframe_) {
+    step_.reset();
+    expectation_ = {};
+  }
   last_ = {};
-  step_ = {};
   attached_ *= kMemory;
 }
 
 std::optional<PoseHypothesis> KeyframeTracker::follow(const ScanView& view) {
   expected_.reset();
   if (!keyframe_ || options_.keyframes.step_m <= 0.0) return std::nullopt;
-  if (attached_ > kDense) expected_ = last_ * step_;
+  if (attached_ > kDense) expected_ = step_ ? expectation_.at(last_ * *step_) : ExpectedPose{last_};
   std::optional<PoseHypothesis> pose = followed(view);
   if (!pose && attached_ > kDense) pose = searched(view);
-  if (!pose || !is_within(pose->ref_from_query, options_.keyframes.step_m, options_.keyframes.turn_rad)) {
-    step_ = {};
+  if (!pose) {
+    step_.reset();
     return std::nullopt;
   }
+  if (step_) expectation_.learn(inverse(last_ * *step_) * pose->ref_from_query);
   step_ = inverse(last_) * pose->ref_from_query;
+  if (!is_within(pose->ref_from_query, options_.keyframes.step_m, options_.keyframes.turn_rad)) return std::nullopt;
   last_ = pose->ref_from_query;
   attached_ = 1.0 - kMemory * (1.0 - attached_);
   return pose;
@@ -55,8 +60,8 @@ std::optional<PoseHypothesis> KeyframeTracker::follow(const ScanView& view) {
 /// From where the last scan was, and from where the motion goes on.
 std::optional<PoseHypothesis> KeyframeTracker::followed(const ScanView& view) const {
   PoseHypothesis best = refined_hypothesis(*keyframe_, view, last_, options_.robust.search);
-  if (!(step_ == Pose2{})) {
-    PoseHypothesis onward = refined_hypothesis(*keyframe_, view, last_ * step_, options_.robust.search);
+  if (step_) {
+    PoseHypothesis onward = refined_hypothesis(*keyframe_, view, last_ * *step_, options_.robust.search);
     if (onward.score > best.score) best = std::move(onward);
   }
   const Pose2 step = inverse(last_) * best.ref_from_query;

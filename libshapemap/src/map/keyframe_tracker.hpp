@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "motion_expectation.hpp"
 #include "shapemap/align/pose_hypothesis.hpp"
 #include "shapemap/map/mapping_options.hpp"
 
@@ -18,7 +19,7 @@ class KeyframeTracker {
  public:
   explicit KeyframeTracker(const MappingOptions& options) : options_(options) {}
 
-  /// From here on, scans are compared to `keyframe`.
+  /// From here on, scans are compared to `keyframe`; with none, another log starts.
   void start(std::shared_ptr<const ScanView> keyframe);
 
   /// The pose of a scan that the keyframe can stand for, in its frame.
@@ -26,7 +27,7 @@ class KeyframeTracker {
 
   /// Where the scan last asked about was to be expected, in the frame of the keyframe then: only where scans follow
   /// each other closely.
-  const std::optional<Pose2>& expected() const { return expected_; }
+  const std::optional<ExpectedPose>& expected() const { return expected_; }
 
  private:
   std::optional<PoseHypothesis> followed(const ScanView& view) const;
@@ -34,9 +35,10 @@ class KeyframeTracker {
 
   const MappingOptions& options_;
   std::shared_ptr<const ScanView> keyframe_;
-  Pose2 last_;  ///< of the scan before, in the frame of the keyframe
-  Pose2 step_;  ///< to it from the one before
-  std::optional<Pose2> expected_;
+  Pose2 last_;                 ///< of the scan before, in the frame of the keyframe
+  std::optional<Pose2> step_;  ///< to it from the one before, where that is known
+  MotionExpectation expectation_;
+  std::optional<ExpectedPose> expected_;
   double attached_ = 0.0;  ///< share of the recent scans that a keyframe stood for
 };
 

@@ -33,18 +33,14 @@ class LinkDoubts {
 
   bool run() {
     poses_ = map_.map_from_keyframe;
+    habit_ = motion_habit(chain_);
     find();
     if (doubts_.empty()) return false;
-    habit_ = motion_habit(chain_);
-    const LinkRevisionOptions& revision = options_.link_revision;
     const double least = options_.smoothing.split_below;
     for (const bool thoroughly : {false, true}) {
       for (Doubt& doubt : doubts_) add_candidates(doubt, thoroughly);
-      settle(thoroughly ? least : std::max(least, revision.clear_above));
-    }
-    for (const Doubt& doubt : doubts_) {
-      map_.link_choice[doubt.of_map.link] = kCut;
-      changed_ = true;
+      settle(thoroughly ? least : std::max(least, options_.link_revision.clear_above));
+      cut_those(/*all=*/thoroughly);
     }
     drop_contradicted_loops();
     if (!changed_) return false;
@@ -86,20 +82,36 @@ class LinkDoubts {
     doubts_ = std::move(rest);
   }
 
+  /// Those that say otherwise than what joined their two sides, or all.
+  void cut_those(bool all) {
+    std::vector<Doubt> rest;
+    for (Doubt& doubt : doubts_) {
+      const std::size_t link = doubt.of_map.link;
+      if (!all && piece_[link] != piece_[link + 1]) {
+        rest.push_back(std::move(doubt));
+        continue;
+      }
+      map_.link_choice[link] = kCut;
+      changed_ = true;
+    }
+    doubts_ = std::move(rest);
+  }
+
   /// Where the observer asked to stop, nobody was asked, and the link is as probable as before.
   void note(const Doubt& doubt, const RevisedLink& link) {
     std::optional<RevisedChoice>& revised = chain_.links[doubt.of_map.link].revised;
     revised.reset();
     if (link.said_by_others.empty()) return;
     revised = RevisedChoice{doubt.hypotheses[link.candidate], link.probability, doubt.in_map,
-                            by_hypothesis(doubt, link.said_by_others)};
+                            by_hypothesis(doubt, link.said_by_others), by_hypothesis(doubt, link.vouched)};
   }
 
   /// Candidates are all hypotheses, that of the map first.
-  static std::vector<Balance> by_hypothesis(const Doubt& doubt, const std::vector<Balance>& by_candidate) {
-    std::vector<Balance> balances(by_candidate.size());
-    for (std::size_t c = 0; c < by_candidate.size(); ++c) balances[doubt.hypotheses[c]] = by_candidate[c];
-    return balances;
+  template <class What>
+  static std::vector<What> by_hypothesis(const Doubt& doubt, const std::vector<What>& by_candidate) {
+    std::vector<What> in_order(by_candidate.size());
+    for (std::size_t c = 0; c < by_candidate.size(); ++c) in_order[doubt.hypotheses[c]] = by_candidate[c];
+    return in_order;
   }
 
   /// Links that join pieces which neither sure links nor sure loops do, whether the map takes them or cuts them.
@@ -170,13 +182,18 @@ class LinkDoubts {
       add_bridges(i);
     }
     doubt.hypotheses = {doubt.in_map};
-    const auto covariance = [&](std::size_t k) { return link_constraint(chain_, i, k).covariance; };
-    doubt.of_map.candidates = {{in_map(i), link.hypotheses[doubt.in_map].score, covariance(doubt.in_map)}};
+    doubt.of_map.candidates = {candidate(i, doubt.in_map, in_map(i))};
     for (std::size_t k = 0; k < link.hypotheses.size(); ++k) {
       if (k == doubt.in_map) continue;
       doubt.hypotheses.push_back(k);
-      doubt.of_map.candidates.push_back({link.hypotheses[k].ref_from_query, link.hypotheses[k].score, covariance(k)});
+      doubt.of_map.candidates.push_back(candidate(i, k, link.hypotheses[k].ref_from_query));
     }
+  }
+
+  DoubtfulLink::Candidate candidate(std::size_t i, std::size_t k, const Pose2& a_from_b) const {
+    const PoseHypothesis& hypothesis = chain_.links[i].hypotheses[k];
+    return {a_from_b, hypothesis.score, link_constraint(chain_, i, k).covariance,
+            best_deviation_m(pose_covariance(hypothesis.fit))};
   }
 
   /// Where loops have cut a link, what the map has may be none of the link's hypotheses.
@@ -184,7 +201,7 @@ class LinkDoubts {
     if (map_.link_choice[i] != kCut) return static_cast<std::size_t>(map_.link_choice[i]);
     std::vector<PoseHypothesis>& known = chain_.links[i].hypotheses;
     const Pose2 pose = in_map(i);
-    add_if_new(refined_hypothesis(*views_[i], *views_[i + 1], pose, options_.robust.search), known);
+    add(i, refined_hypothesis(*views_[i], *views_[i + 1], pose, options_.robust.search));
     const auto off = [&](const PoseHypothesis& hypothesis) {
       return (hypothesis.ref_from_query.translation() - pose.translation()).norm() +
              angle_between(hypothesis.ref_from_query.theta_rad, pose.theta_rad);
@@ -222,7 +239,7 @@ class LinkDoubts {
 
   /// What is unusual scores less, as in the chain.
   void add(std::size_t i, PoseHypothesis pose) {
-    if (!chain_.keyframes[i + 1].expected) pose.score -= habit_.surprise(pose.ref_from_query);
+    pose.score -= surprise(chain_.keyframes[i + 1], habit_, pose.ref_from_query);
     add_if_new(pose, chain_.links[i].hypotheses);
   }
 

@@ -33,14 +33,6 @@ double companion_score(const Visibility& v) {
 
 bool more_likely(const PoseHypothesis& a, const PoseHypothesis& b) { return a.score > b.score; }
 
-/// As logarithm of odds, of a scan that is so far off where it was expected.
-double surprise(const Pose2& off) {
-  constexpr double kMost = 4.0;
-  const double far = std::max(0.0, off.translation().norm() / kUsualSurprise_m - 1.0);
-  const double turned = std::max(0.0, std::abs(off.theta_rad) / kUsualSurprise_rad - 1.0);
-  return std::min(kMost, 2.0 * far) + std::min(kMost, 2.0 * turned);
-}
-
 }  // namespace
 
 RobustChain::RobustChain(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
@@ -163,12 +155,12 @@ void RobustChain::link_keyframes(std::size_t first_new) {
 }
 
 /// Where scans follow each other closely, hypotheses far from where the next was to be expected are less likely.
-void RobustChain::expect(const Pose2& ref_from_query, std::size_t link) {
+void RobustChain::expect(const ExpectedPose& expected, std::size_t link) {
   std::vector<PoseHypothesis>& found = hypotheses(link);
   add_if_new(
-      refined_hypothesis(view_of_keyframe(link), view_of_keyframe(link + 1), ref_from_query, options_.robust.search),
+      refined_hypothesis(view_of_keyframe(link), view_of_keyframe(link + 1), expected.pose, options_.robust.search),
       found);
-  for (PoseHypothesis& pose : found) pose.score -= surprise(inverse(ref_from_query) * pose.ref_from_query);
+  for (PoseHypothesis& pose : found) pose.score -= surprise(expected, pose.ref_from_query);
   std::stable_sort(found.begin(), found.end(), more_likely);
 }
 

@@ -37,7 +37,7 @@ class RobustChain {
   void take(std::size_t position_index, const std::shared_ptr<const ScanView>& view);
   void link_keyframes(std::size_t first_new);
   void find_hypotheses(std::size_t link);
-  void expect(const Pose2& ref_from_query, std::size_t link);
+  void expect(const ExpectedPose& expected, std::size_t link);
   void expect_the_usual();
   void expect_the_usual(const MotionHabit& habit, std::size_t link);
   std::vector<PoseHypothesis> aligned(std::size_t reference, std::size_t query, SearchKind search,

@@ -202,8 +202,8 @@ void trace_revised(const KeyframeChain& chain, TraceSink& sink) {
     const KeyframeLink& link = chain.links[i];
     if (!link.revised) continue;
     sink.on_revision({chain.keyframes[i].position_index, chain.keyframes[i + 1].position_index, link.hypotheses,
-                      link.revised->said_by_others, link.revised->in_map, link.revised->hypothesis,
-                      link.revised->probability});
+                      link.revised->said_by_others, link.revised->vouched, link.revised->in_map,
+                      link.revised->hypothesis, link.revised->probability});
   }
 }
 

@@ -70,6 +70,10 @@ TEST(PoseCovariance, IsAlwaysPositiveDefinite) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
     EXPECT_GT(eigen.eigenvalues().minCoeff(), 0.0) << round;
     EXPECT_GE(worst_deviation_m(covariance), std::sqrt(std::max(covariance(0, 0), covariance(1, 1))) * (1 - 1e-9));
+    EXPECT_LE(best_deviation_m(covariance), std::sqrt(std::min(covariance(0, 0), covariance(1, 1))) * (1 + 1e-9));
+    const double area = best_deviation_m(covariance) * worst_deviation_m(covariance);
+    const double determinant = covariance.topLeftCorner<2, 2>().determinant();
+    EXPECT_NEAR(area * area, determinant, 1e-6 * area * area + 1e-12);
   }
 }
 

@@ -52,6 +52,17 @@ TEST(MotionHabit, TellsTheMoreTheMoreIsKnownAndNeverMuch) {
   EXPECT_LT(before, 12.0);
 }
 
+/// Half a metre more is unusual for one that goes by decimetres, and little for one that goes by metres.
+TEST(MotionHabit, IsAsExactAsStepsAreShort) {
+  const auto surprise_by_more = [](double step_m) {
+    std::vector<Pose2> motions;
+    for (int i = 0; i < 60; ++i) motions.push_back({step_m + 0.002 * i, 0.0, 0.0});
+    return MotionHabit(motions).surprise({step_m + 0.06 + 0.3, 0.0, 0.0});
+  };
+  EXPECT_GT(surprise_by_more(0.1), 2.0);
+  EXPECT_LT(surprise_by_more(1.5), 1.0);
+}
+
 TEST(MotionHabit, OfNineMotionsOneInSixWouldBeOfANewKind) {
   std::mt19937 rng(2);
   const double surprise = MotionHabit(of_a_robot(9, rng)).surprise({-6.0, 0.0, 180 * kDegree});

@@ -167,6 +167,60 @@ TEST(ReviseLinks, IsLessSureOfScansThatSeeLittle) {
   EXPECT_LT(map.revised().links[0].probability, sure - 0.05);
 }
 
+/// Another link tells the same place, and then all are as probable as the first that joined.
+struct TornTwice : Torn {
+  /// Nodes 4 to 8 are a piece of their own; before and after it are one, as loops make them.
+  explicit TornTwice(const Pose2& wrong = kTurnedAway) : Torn({3, 8}, wrong) {
+    for (std::size_t n = 9; n < truth.size(); ++n) {
+      pieces[n] = pieces[0];
+      poses[n] = truth[n];
+    }
+    for (DoubtfulLink& doubt : doubts) {
+      const Pose2 step = true_step(doubt.link);
+      doubt.candidates = {{inverse(poses[doubt.link]) * poses[doubt.link + 1], -9.0}, {step, -9.0}};
+    }
+  }
+};
+
+TEST(ReviseLinks, BelievesWhatTheWayThereAndTheWayBackBothSay) {
+  TornTwice map;
+  const RevisedMap both = map.revised(1.0);
+  EXPECT_GT(both.links[0].vouched[1], 0.0);
+  EXPECT_EQ(both.links[0].vouched[0], both.links[1].vouched[0]) << "where the map has it, both are the same as well";
+  TornTwice alone;
+  alone.doubts[1].candidates.pop_back();
+  const RevisedMap one = alone.revised(1.0);
+  EXPECT_EQ(one.links[0].vouched[1], 0.0);
+  EXPECT_LT(one.links[0].probability, both.links[0].probability);
+}
+
+TEST(ReviseLinks, JoinsParallelLinksTogether) {
+  TornTwice map;
+  map.doubts[0].candidates[1].score = 8.0;
+  const RevisedMap revised = map.revised();
+  EXPECT_THAT(choices(revised), ElementsAre(1, 1));
+  EXPECT_EQ(revised.links[0].probability, revised.links[1].probability);
+  EXPECT_LT(test::worst_off_m(revised.map_from_node, map.truth), 1e-6);
+}
+
+TEST(ReviseLinks, LeavesParallelLinksOutThatSayOtherwise) {
+  TornTwice map;
+  map.doubts[0].candidates[1].score = 8.0;
+  map.doubts[1].candidates[1].a_from_b = map.true_step(8) * kTooFar;
+  const RevisedMap revised = map.revised();
+  EXPECT_THAT(choices(revised), ElementsAre(1, kCut));
+  EXPECT_THAT(revised.piece_of_node, Each(revised.piece_of_node.front()));
+  EXPECT_LT(test::worst_off_m(revised.map_from_node, map.truth), 1e-6);
+}
+
+TEST(ReviseLinks, IsLessSureOfAPlaceThatTwoScansHoldInNoDirection) {
+  Torn map({6});
+  map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
+  const double held = map.revised().links[0].probability;
+  map.doubts[0].candidates[2].best_deviation_m = 10.0;
+  EXPECT_LT(map.revised().links[0].probability, held - 0.01);
+}
+
 TEST(ReviseLinks, TellsTheBestOfWhatIsNotJoined) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});

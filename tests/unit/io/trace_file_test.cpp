@@ -172,6 +172,7 @@ TEST_F(TraceOfAWalk, TellsHowLinksInDoubtWereJudged) {
     for (const auto& hypothesis : hypotheses) {
       EXPECT_GE(hypothesis["for_it"], 0.0);
       EXPECT_GE(hypothesis["against_it"], 0.0);
+      EXPECT_GE(hypothesis["vouched"], 0.0);
     }
     EXPECT_LT(revision["in_map"], hypotheses.size());
     EXPECT_EQ(revision["alternative"], traced["choice"][k]["alternative"]);

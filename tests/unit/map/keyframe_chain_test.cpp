@@ -29,7 +29,7 @@ TEST(LinkConstraint, IsHeldByTheUsualMotionWhereTheScansSayLittle) {
   EXPECT_NEAR(deviation_m(chain), kUsualSlip_m, 0.01) << "nothing is expected";
   EXPECT_NEAR(link_constraint(chain, 0, 0).covariance(1, 1), by_scans(1, 1), 0.02 * by_scans(1, 1));
   const Pose2 pose = chain.links[0].hypotheses[0].ref_from_query;
-  chain.keyframes[1].expected = pose * Pose2{0.1, 0.0, 2 * kDegree};
+  chain.keyframes[1].expected = ExpectedPose{pose * Pose2{0.1, 0.0, 2 * kDegree}};
   const Eigen::Matrix3d by_both = link_constraint(chain, 0, 0).covariance;
   EXPECT_NEAR(deviation_m(chain), kUsualSurprise_m, 0.01);
   EXPECT_NEAR(by_both(1, 1), by_scans(1, 1), 0.02 * by_scans(1, 1));
@@ -41,17 +41,27 @@ TEST(LinkConstraint, IsHeldByTheUsualMotionWhereTheScansSayLittle) {
 /// Else a jump would be the cheaper alternative: it could be pulled wherever loops want it.
 TEST(LinkConstraint, IsHeldAlikeWhereAnAlternativeIsAJump) {
   KeyframeChain chain = sliding_link();
-  chain.keyframes[1].expected = chain.links[0].hypotheses[0].ref_from_query;
+  chain.keyframes[1].expected = ExpectedPose{chain.links[0].hypotheses[0].ref_from_query};
   const Eigen::Matrix3d usual = link_constraint(chain, 0, 0).covariance;
-  chain.keyframes[1].expected = chain.links[0].hypotheses[0].ref_from_query * Pose2{1.2, 0.0, 0.0};
+  chain.keyframes[1].expected = ExpectedPose{chain.links[0].hypotheses[0].ref_from_query * Pose2{1.2, 0.0, 0.0}};
   EXPECT_EQ(link_constraint(chain, 0, 0).covariance, usual);
 }
 
 TEST(LinkConstraint, OfASettledMapIsWhatTheMapSays) {
   KeyframeChain chain = sliding_link();
-  chain.keyframes[1].expected = chain.links[0].hypotheses[0].ref_from_query;
+  chain.keyframes[1].expected = ExpectedPose{chain.links[0].hypotheses[0].ref_from_query};
   chain.links[0].settled_covariance = Eigen::Matrix3d::Identity();
   EXPECT_EQ(link_constraint(chain, 0, 0).covariance, Eigen::Matrix3d::Identity());
+}
+
+TEST(Surprise, IsByHabitWhereNothingWasToBeExpected) {
+  const MotionHabit habit(std::vector<Pose2>(50, Pose2{1.0, 0.0, 0.0}));
+  const Pose2 back{-1.0, 0.0, 0.0};
+  Keyframe keyframe;
+  EXPECT_GT(habit.surprise(back), 1.0);
+  EXPECT_EQ(surprise(keyframe, habit, back), habit.surprise(back));
+  keyframe.expected = ExpectedPose{back};
+  EXPECT_EQ(surprise(keyframe, habit, back), 0.0);
 }
 
 /// `off` the first, and a little worse.

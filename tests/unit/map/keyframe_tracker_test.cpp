@@ -90,6 +90,56 @@ TEST(KeyframeTracker, ForgetsTheMotionWhenAnotherLogStarts) {
   EXPECT_THAT(found->ref_from_query, test::HasSameBits(expected->ref_from_query));
 }
 
+/// A keyframe is no reason to stop.
+TEST(KeyframeTracker, ExpectsTheMotionToGoOnAfterAKeyframe) {
+  const MappingOptions options;
+  KeyframeTracker tracker(options);
+  tracker.start(view_at(ahead(0.0)));
+  double along_m = 0.0;
+  unsigned k = 1;
+  do {
+    along_m += 0.08;
+    ++k;
+  } while (tracker.follow(*view_at(ahead(along_m), k)));
+  tracker.start(view_at(ahead(along_m), k));
+  for (unsigned more = 1; more <= 40; ++more) {  // until it is dense
+    if (!tracker.follow(*view_at(ahead(along_m + 0.002 * more), k + more))) break;
+  }
+  tracker.start(view_at(ahead(along_m)));
+  ASSERT_TRUE(tracker.follow(*view_at(ahead(along_m + 0.07), 90)));
+  ASSERT_TRUE(tracker.follow(*view_at(ahead(along_m + 0.14), 91)));
+  tracker.start(view_at(ahead(along_m + 0.14), 91));
+  EXPECT_FALSE(tracker.follow(test::view_from(test::strange_place(3), {})));
+  ASSERT_TRUE(tracker.expected());
+  const Pose2 onward = inverse(ahead(along_m + 0.14)) * ahead(along_m + 0.21);
+  EXPECT_THAT(tracker.expected()->pose, IsNearPose(onward, 0.05, 2 * kDegree));
+  EXPECT_FALSE(tracker.follow(test::view_from(test::strange_place(3), {})));
+  ASSERT_TRUE(tracker.expected());
+  EXPECT_THAT(tracker.expected()->pose, test::HasSameBits(Pose2{})) << "nobody knows";
+  EXPECT_EQ(tracker.expected()->usual_m, kUsualSurprise_m);
+}
+
+TEST(KeyframeTracker, LearnsHowNearScansAreToWhereTheyWereToBeExpected) {
+  const MappingOptions options;
+  KeyframeTracker tracker(options);
+  std::vector<double> usual_m;
+  double along_m = 0.0;
+  tracker.start(view_at(ahead(along_m)));
+  for (unsigned k = 1; k <= 80; ++k) {
+    along_m += 0.05;
+    if (!tracker.follow(*view_at(ahead(along_m), k))) tracker.start(view_at(ahead(along_m), k));
+    if (tracker.expected()) usual_m.push_back(tracker.expected()->usual_m);
+  }
+  ASSERT_GT(usual_m.size(), 30U);
+  EXPECT_EQ(usual_m.front(), kUsualSurprise_m);
+  EXPECT_LT(usual_m.back(), 0.5 * kUsualSurprise_m);
+  tracker.start(nullptr);
+  tracker.start(view_at(ahead(0.0)));
+  tracker.follow(*view_at(ahead(0.05)));
+  ASSERT_TRUE(tracker.follow(*view_at(ahead(0.10))));
+  EXPECT_EQ(tracker.expected()->usual_m, kUsualSurprise_m) << "another log";
+}
+
 Log dense_log(std::size_t count) {
   Log log;
   const test::World world = test::ring_world(1);

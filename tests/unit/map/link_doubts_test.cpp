@@ -144,6 +144,26 @@ TEST(LinkDoubts, WhatIsNotClearIsSearchedAgain) {
   EXPECT_GT(hypotheses_of(1.0), hypotheses_of(0.0));
 }
 
+/// As in the chain. Else places far away, of which a thorough search finds many, outdo the true one together.
+TEST(LinkDoubts, WhatIsSearchedAgainScoresLessFarFromWhereTheScanWasToBeExpected) {
+  CutForALoop walk(5.0);
+  const ExpectedPose expected{walk.step(kLink)};
+  walk.chain.keyframes[kLink + 1].expected = expected;
+  MappingOptions options;
+  options.chain.threads = 1;
+  options.link_revision.clear_above = 1.0;
+  RunObserver nobody;
+  revise_doubtful_links(options, nobody, nullptr, walk.chain, walk.map);
+  double most = 0.0;
+  for (const PoseHypothesis& pose : walk.chain.links[kLink].hypotheses) {
+    const double unlikely = surprise(expected, pose.ref_from_query);
+    const double by_scans = hypothesis_at(*walk.views[kLink], *walk.views[kLink + 1], pose.ref_from_query, {}).score;
+    EXPECT_NEAR(pose.score, by_scans - unlikely, 0.05);
+    most = std::max(most, unlikely);
+  }
+  EXPECT_GT(most, 4.0);
+}
+
 /// Of scans that look one way as well.
 TEST(LinkDoubts, ALinkThatTheOthersContradictIsReplaced) {
   CutForALoop walk(5.0, test::half_circle());

@@ -45,4 +45,7 @@ Eigen::Matrix3d pose_covariance(const LineFit& fit, const LineNoise& noise = {})
 /// Standard deviation in the direction in which a position is held worst.
 double worst_deviation_m(const Eigen::Matrix3d& covariance);
 
+/// And in which it is held best: along a corridor, that across it.
+double best_deviation_m(const Eigen::Matrix3d& covariance);
+
 }  // namespace shapemap

@@ -52,6 +52,7 @@ struct TracedRevision {
   std::size_t query_index = 0;
   const std::vector<PoseHypothesis>& hypotheses;  ///< those of the link, and then what was looked for since
   const std::vector<Balance>& said_by_others;     ///< of each hypothesis
+  const std::vector<double>& vouched;             ///< of each hypothesis
   std::size_t in_map = 0;                         ///< the hypothesis that the map had until then
   std::size_t alternative = 0;                    ///< the best
   double probability = 0.0;                       ///< that it is right

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "shapemap/core/pose2.hpp"
+
+namespace shapemap {
+
+/// A map in pieces, each right in itself, in one frame. Link i is what node i + 1 is to node i.
+class MapPieces {
+ public:
+  MapPieces(std::vector<Pose2> map_from_node, std::vector<std::size_t> piece_of_node)
+      : map_from_node_(std::move(map_from_node)), piece_of_node_(std::move(piece_of_node)) {}
+
+  const std::vector<Pose2>& map_from_node() const { return map_from_node_; }
+  const std::vector<std::size_t>& piece_of_node() const { return piece_of_node_; }
+
+  bool is_joined(std::size_t link) const { return piece_of_node_[link] == piece_of_node_[link + 1]; }
+
+  /// How the piece of the later node moves when the link is `a_from_b`.
+  Pose2 moved_by(std::size_t link, const Pose2& a_from_b) const;
+
+  /// Moves the piece of the later node, and gives it the number of the other.
+  void join(std::size_t link, const Pose2& a_from_b);
+
+  /// Whether both links join the same two pieces, in either direction.
+  bool are_parallel(std::size_t link, std::size_t other) const;
+
+  /// What `link` is when a parallel one is `a_from_b`.
+  Pose2 carried_to(std::size_t link, std::size_t parallel, const Pose2& a_from_b) const;
+
+ private:
+  std::vector<Pose2> map_from_node_;
+  std::vector<std::size_t> piece_of_node_;
+};
+
+}  // namespace shapemap
