@@ -17,6 +17,10 @@ constexpr double kLargestTurn_rad = 10 * kDegree;
 constexpr double kMostDeviation_m = 0.10;
 constexpr double kSure = 0.95;
 
+/// A sensor that stands does not tell how it moves.
+constexpr double kStands_m = 0.01;
+constexpr double kStands_rad = 0.5 * kDegree;
+
 /// A search at each scan pays only where scans follow each other closely.
 constexpr double kDense = 0.5;
 constexpr double kMemory = 0.97;
@@ -49,8 +53,9 @@ std::optional<PoseHypothesis> KeyframeTracker::follow(const ScanView& view) {
     step_.reset();
     return std::nullopt;
   }
-  if (step_) expectation_.learn(inverse(last_ * *step_) * pose->ref_from_query);
-  step_ = inverse(last_) * pose->ref_from_query;
+  const Pose2 step = inverse(last_) * pose->ref_from_query;
+  if (step_ && !is_within(step, kStands_m, kStands_rad)) expectation_.learn(inverse(*step_) * step);
+  step_ = step;
   if (!is_within(pose->ref_from_query, options_.keyframes.step_m, options_.keyframes.turn_rad)) return std::nullopt;
   last_ = pose->ref_from_query;
   attached_ = 1.0 - kMemory * (1.0 - attached_);

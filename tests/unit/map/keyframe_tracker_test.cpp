@@ -140,6 +140,15 @@ TEST(KeyframeTracker, LearnsHowNearScansAreToWhereTheyWereToBeExpected) {
   EXPECT_EQ(tracker.expected()->usual_m, kUsualSurprise_m) << "another log";
 }
 
+TEST(KeyframeTracker, LearnsNothingWhileTheSensorStands) {
+  const MappingOptions options;
+  KeyframeTracker tracker(options);
+  tracker.start(view_at(ahead(0.0)));
+  for (unsigned k = 1; k <= 80; ++k) ASSERT_TRUE(tracker.follow(*view_at(ahead(0.0))));
+  ASSERT_TRUE(tracker.expected());
+  EXPECT_EQ(tracker.expected()->usual_m, kUsualSurprise_m);
+}
+
 Log dense_log(std::size_t count) {
   Log log;
   const test::World world = test::ring_world(1);
