@@ -3,7 +3,8 @@
 """Fit how probable a link between consecutive keyframes is: one that no loop holds by its two scans, and one in doubt
 by all scans of both sides. Links come from variants of real logs, from simulated arenas and from hard scenes; how
 probable the mapper says they are is held against the truth: on logs that nothing was fitted to, a test of it. What is
-fitted belongs into probability_of_neighbours() and link_revision.cpp."""
+fitted belongs into probability_of_neighbours() and link_revision.cpp; what a parallel link says was made with the
+weights in use, so that a fit of its weight is one step towards the best."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ constexpr std::size_t kAngleBins = 180;
 constexpr double kAngleBin_rad = 2.0 * kPi / static_cast<double>(kAngleBins);
 
 /// Deviations of the kernels, at least: of what is known, and of what is asked about.
-constexpr double kStepKernel_m = 0.25;
+constexpr double kStepKernel_m = 0.25;  ///< of long steps
 constexpr double kAngleKernel_rad = 12 * kDegree;
 
 /// Of short steps, a quarter of what is usual, if so many tell; at least this.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -37,7 +38,8 @@ constexpr double kByParallel = 0.5;
 constexpr double kNoneOfThem = -5.7;
 constexpr double kPerShortfall = 25.0;  ///< the less two scans see, the likelier; fitted to hard scenes
 
-double worth_by_two_scans(const DoubtfulLink& doubt, std::size_t k) {
+/// By its two scans, and whether the map has it.
+double worth_by_itself(const DoubtfulLink& doubt, std::size_t k) {
   const DoubtfulLink::Candidate& candidate = doubt.candidates[k];
   return kPerScore * std::max(kLeastScore, candidate.score) - kPerLoose * std::log1p(candidate.best_deviation_m) +
          (k == 0 ? kOfMap : 0.0);
@@ -123,7 +125,7 @@ class Revision {
     std::vector<double> vouched = said_by_parallel(d);
     std::vector<double> worths;
     for (std::size_t k = 0; k < balances.size(); ++k) {
-      worths.push_back(worth_by_two_scans(doubt, k) + kByOthers * balances[k].value() + kByParallel * vouched[k]);
+      worths.push_back(worth_by_itself(doubt, k) + kByOthers * balances[k].value() + kByParallel * vouched[k]);
     }
     RevisedLink verdict = verdict_by(worths, doubt);
     verdict.said_by_others = std::move(balances);
@@ -152,16 +154,17 @@ class Revision {
     return balance;
   }
 
-  /// Of each candidate, how much more than nothing the parallel link says that says most for it. The two do not tell
-  /// independently of each other, so it counts in part.
+  /// Of each candidate, how much more than none of its own the parallel link says for it that says most. The two do not
+  /// tell independently of each other, so it counts in part.
   std::vector<double> said_by_parallel(std::size_t d) const {
     const DoubtfulLink& doubt = doubtful_[d];
     std::vector<double> said(doubt.candidates.size(), 0.0);
     for (const std::size_t e : parallel_to(d)) {
+      if (!are_near(d, e)) continue;
       const DoubtfulLink& other = doubtful_[e];
       for (std::size_t j = 0; j < other.candidates.size(); ++j) {
         const Pose2 place = pieces_.carried_to(doubt.link, other.link, other.candidates[j].a_from_b);
-        const double more_than_none = worth_by_two_scans(other, j) - worth_of_none(other);
+        const double more_than_none = worth_by_itself(other, j) - worth_of_none(other);
         for (std::size_t k = 0; k < said.size(); ++k) {
           if (is_same(place, doubt.candidates[k].a_from_b)) said[k] = std::max(said[k], more_than_none);
         }
@@ -173,24 +176,27 @@ class Revision {
   std::vector<std::size_t> parallel_to(std::size_t d) const {
     std::vector<std::size_t> parallel;
     for (std::size_t e = 0; e < doubtful_.size(); ++e) {
-      const auto [before, after] = std::minmax(doubtful_[d].link, doubtful_[e].link);
-      if (e == d || after - before > kWindow) continue;
-      if (pieces_.are_parallel(doubtful_[d].link, doubtful_[e].link)) parallel.push_back(e);
+      if (e != d && pieces_.are_parallel(doubtful_[d].link, doubtful_[e].link)) parallel.push_back(e);
     }
     return parallel;
   }
 
-  /// With the parallel links that say the same.
+  bool are_near(std::size_t d, std::size_t e) const {
+    const auto [before, after] = std::minmax(doubtful_[d].link, doubtful_[e].link);
+    return after - before <= kWindow;
+  }
+
+  /// With the parallel links that say the same; those that say otherwise are no more probable than that it is wrong.
   void join(std::size_t d) {
     const std::size_t link = doubtful_[d].link;
     const Pose2 a_from_b = doubtful_[d].candidates[links_[d].candidate].a_from_b;
+    const double probability = links_[d].probability;
     for (const std::size_t e : parallel_to(d)) {
-      const std::optional<std::size_t> same =
-          best_at(doubtful_[e], pieces_.carried_to(doubtful_[e].link, link, a_from_b));
-      if (!same) continue;
-      links_[e].candidate = *same;
-      links_[e].probability = links_[d].probability;
-      links_[e].joins = true;
+      const Pose2 place = pieces_.carried_to(doubtful_[e].link, link, a_from_b);
+      const std::optional<std::size_t> same = candidate_at(place, doubtful_[e], are_near(d, e));
+      links_[e].joins = same.has_value();
+      links_[e].candidate = same.value_or(links_[e].candidate);
+      links_[e].probability = same ? probability : std::min(links_[e].probability, 1.0 - probability);
     }
     links_[d].joins = true;
     pieces_.join(link, a_from_b);
@@ -201,22 +207,29 @@ class Revision {
     }
   }
 
-  static std::optional<std::size_t> best_at(const DoubtfulLink& doubt, const Pose2& place) {
-    std::optional<std::size_t> best;
+  /// That of the map where it is one, else the nearest. Along a long way more must be allowed for.
+  static std::optional<std::size_t> candidate_at(const Pose2& place, const DoubtfulLink& doubt, bool is_near) {
+    std::optional<std::size_t> nearest;
+    double nearest_m = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < doubt.candidates.size(); ++k) {
-      if (!is_same(place, doubt.candidates[k].a_from_b)) continue;
-      if (!best || worth_by_two_scans(doubt, k) > worth_by_two_scans(doubt, *best)) best = k;
+      const Pose2& pose = doubt.candidates[k].a_from_b;
+      const Pose2 off = inverse(pose) * place;
+      if (!(is_near ? is_same(place, pose) : is_within(off, kContradicts_m, kContradicts_rad))) continue;
+      if (k == 0) return k;
+      if (off.translation().norm() >= nearest_m) continue;
+      nearest = k;
+      nearest_m = off.translation().norm();
     }
-    return best;
+    return nearest;
   }
 
   void leave_as_they_were() {
     for (std::size_t d = 0; d < doubtful_.size(); ++d) {
-      if (links_[d].joins) continue;
+      const std::size_t link = doubtful_[d].link;
+      const Pose2& in_map = doubtful_[d].candidates.front().a_from_b;
+      if (links_[d].joins || (pieces_.is_joined(link) && !is_same(pieces_.step(link), in_map))) continue;
+      if (!pieces_.is_joined(link)) pieces_.join(link, in_map);
       links_[d] = {0, 0.0, true, {}, {}};
-      if (!pieces_.is_joined(doubtful_[d].link)) {
-        pieces_.join(doubtful_[d].link, doubtful_[d].candidates.front().a_from_b);
-      }
     }
   }
 

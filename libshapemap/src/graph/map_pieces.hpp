@@ -19,6 +19,9 @@ class MapPieces {
 
   bool is_joined(std::size_t link) const { return piece_of_node_[link] == piece_of_node_[link + 1]; }
 
+  /// What node i + 1 is to node i now.
+  Pose2 step(std::size_t link) const { return inverse(map_from_node_[link]) * map_from_node_[link + 1]; }
+
   /// How the piece of the later node moves when the link is `a_from_b`.
   Pose2 moved_by(std::size_t link, const Pose2& a_from_b) const;
 

@@ -36,8 +36,9 @@ bool can_stand_for(const PoseHypothesis& pose) {
 void KeyframeTracker::start(std::shared_ptr<const ScanView> keyframe) {
   keyframe_ = std::move(keyframe);
   if (!keyframe_) {
-    step_.reset();
+    forget_motion();
     expectation_ = {};
+    attached_ = 0.0;
   }
   last_ = {};
   attached_ *= kMemory;
@@ -48,18 +49,22 @@ std::optional<PoseHypothesis> KeyframeTracker::follow(const ScanView& view) {
   if (!keyframe_ || options_.keyframes.step_m <= 0.0) return std::nullopt;
   if (attached_ > kDense) expected_ = step_ ? expectation_.at(last_ * *step_) : ExpectedPose{last_};
   std::optional<PoseHypothesis> pose = followed(view);
-  if (!pose && attached_ > kDense) pose = searched(view);
-  if (!pose) {
-    step_.reset();
-    return std::nullopt;
+  if (pose) {
+    go_on_by(inverse(last_) * pose->ref_from_query);
+  } else {
+    forget_motion();
+    if (attached_ > kDense) pose = searched(view);
   }
-  const Pose2 step = inverse(last_) * pose->ref_from_query;
-  if (step_ && !is_within(step, kStands_m, kStands_rad)) expectation_.learn(inverse(*step_) * step);
-  step_ = step;
+  if (!pose) return std::nullopt;
   if (!is_within(pose->ref_from_query, options_.keyframes.step_m, options_.keyframes.turn_rad)) return std::nullopt;
   last_ = pose->ref_from_query;
   attached_ = 1.0 - kMemory * (1.0 - attached_);
   return pose;
+}
+
+void KeyframeTracker::go_on_by(const Pose2& step) {
+  if (step_ && !is_within(step, kStands_m, kStands_rad)) expectation_.learn(inverse(*step_) * step);
+  step_ = step;
 }
 
 /// From where the last scan was, and from where the motion goes on.

@@ -22,6 +22,9 @@ class KeyframeTracker {
   /// From here on, scans are compared to `keyframe`; with none, another log starts.
   void start(std::shared_ptr<const ScanView> keyframe);
 
+  /// After scans that tell nothing: the motion may have been any.
+  void forget_motion() { step_.reset(); }
+
   /// The pose of a scan that the keyframe can stand for, in its frame.
   std::optional<PoseHypothesis> follow(const ScanView& view);
 
@@ -30,6 +33,7 @@ class KeyframeTracker {
   const std::optional<ExpectedPose>& expected() const { return expected_; }
 
  private:
+  void go_on_by(const Pose2& step);
   std::optional<PoseHypothesis> followed(const ScanView& view) const;
   std::optional<PoseHypothesis> searched(const ScanView& view) const;
 

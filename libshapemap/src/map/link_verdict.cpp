@@ -28,8 +28,8 @@ void judge_link(const Log& log, const KeyframeChain& chain, const KeyframeMap& m
   outcome.alignment = judged(hypotheses, taken, margin, options, probability);
   outcome.reason = outcome.alignment.reason;
   if (is_cut && !hypotheses.empty() && outcome.reason.empty()) {
-    outcome.reason =
-        outcome.held_by_loops ? "loops speak against it" : "less probable than it takes not to split the map";
+    outcome.reason = outcome.held_by_loops ? "the rest of the map speaks against it"
+                                           : "less probable than it takes not to split the map";
   }
   if (sink && !hypotheses.empty()) sink->on_choice({before, outcome.position_index, taken, margin});
 }

@@ -107,6 +107,7 @@ void RobustChain::view_positions(std::size_t first, std::size_t last) {
 /// A scan with shape is attached to the last keyframe, or becomes one.
 void RobustChain::take(std::size_t position_index, const std::shared_ptr<const ScanView>& view) {
   if (starts_log(chain_.keyframes.empty() ? 0 : last_seen_, position_index)) tracker_.start(nullptr);
+  if (position_index > last_seen_ + 1) tracker_.forget_motion();
   last_seen_ = position_index;
   const auto start = std::chrono::steady_clock::now();
   const std::optional<PoseHypothesis> pose = tracker_.follow(*view);

@@ -52,7 +52,7 @@ TEST(MotionHabit, TellsTheMoreTheMoreIsKnownAndNeverMuch) {
   EXPECT_LT(before, 12.0);
 }
 
-/// Half a metre more is unusual for one that goes by decimetres, and little for one that goes by metres.
+/// A quarter of a metre more is unusual for one that goes by decimetres, and little for one that goes by metres.
 TEST(MotionHabit, IsAsExactAsStepsAreShort) {
   const auto surprise_by_more = [](double step_m) {
     std::vector<Pose2> motions;

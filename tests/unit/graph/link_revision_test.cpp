@@ -20,7 +20,8 @@ const Pose2 kTooFar{1.4, 0.3, 0.0};
 
 /// A walk round a corner of the ring, in pieces that are right in themselves but not to each other.
 struct Torn {
-  explicit Torn(const std::vector<std::size_t>& tears, const Pose2& wrong = kTurnedAway) {
+  explicit Torn(const std::vector<std::size_t>& tears, const Pose2& wrong = kTurnedAway, std::size_t count = 14)
+      : truth(test::ring_walk(count, 2, 4.0)), views(test::views_along(test::ring_world(1), truth)) {
     std::size_t first = 0;
     Pose2 moved;
     for (std::size_t n = 0; n < truth.size(); ++n) {
@@ -43,8 +44,8 @@ struct Torn {
     return revise_links(views, poses, pieces, doubts, {}, least_probability, threads, nobody);
   }
 
-  std::vector<Pose2> truth = test::ring_walk(14, 2, 4.0);
-  test::Views views = test::views_along(test::ring_world(1), truth);
+  std::vector<Pose2> truth;
+  test::Views views;
   std::vector<Pose2> poses;
   std::vector<std::size_t> pieces;
   std::vector<DoubtfulLink> doubts;
@@ -167,11 +168,10 @@ TEST(ReviseLinks, IsLessSureOfScansThatSeeLittle) {
   EXPECT_LT(map.revised().links[0].probability, sure - 0.05);
 }
 
-/// Another link tells the same place, and then all are as probable as the first that joined.
+/// Nodes 4 to `last` are a piece of their own; before and after it are one, as loops make them.
 struct TornTwice : Torn {
-  /// Nodes 4 to 8 are a piece of their own; before and after it are one, as loops make them.
-  explicit TornTwice(const Pose2& wrong = kTurnedAway) : Torn({3, 8}, wrong) {
-    for (std::size_t n = 9; n < truth.size(); ++n) {
+  explicit TornTwice(std::size_t last = 8, std::size_t count = 14) : Torn({3, last}, kTurnedAway, count) {
+    for (std::size_t n = last + 1; n < truth.size(); ++n) {
       pieces[n] = pieces[0];
       poses[n] = truth[n];
     }
@@ -209,8 +209,38 @@ TEST(ReviseLinks, LeavesParallelLinksOutThatSayOtherwise) {
   map.doubts[1].candidates[1].a_from_b = map.true_step(8) * kTooFar;
   const RevisedMap revised = map.revised();
   EXPECT_THAT(choices(revised), ElementsAre(1, kCut));
+  EXPECT_LE(revised.links[1].probability, 1.0 - revised.links[0].probability);
   EXPECT_THAT(revised.piece_of_node, Each(revised.piece_of_node.front()));
   EXPECT_LT(test::worst_off_m(revised.map_from_node, map.truth), 1e-6);
+}
+
+/// Too far along the chain to tell each other anything, but not to be held together.
+TEST(ReviseLinks, JoinsParallelLinksThatAreFarApart) {
+  TornTwice map(24, 30);
+  map.doubts[0].candidates[1].score = 8.0;
+  map.doubts[1].candidates[1].a_from_b = map.true_step(24) * Pose2{0.5, 0.0, 0.0};
+  const RevisedMap revised = map.revised();
+  EXPECT_THAT(choices(revised), ElementsAre(1, 1));
+  EXPECT_EQ(revised.links[0].vouched[1], 0.0);
+  EXPECT_LT(test::worst_off_m(revised.map_from_node, map.truth), 1e-6);
+}
+
+/// What nobody was asked about stays, unless it contradicts what was joined.
+TEST(ReviseLinks, StopsBetweenTwoLinksThatContradictEachOther) {
+  struct StopsAfter : RunObserver {
+    explicit StopsAfter(int asked) : left(asked) {}
+    bool keep_going() override { return left-- > 0; }
+    int left;
+  };
+  TornTwice map;
+  map.doubts[0].candidates[1].score = 8.0;
+  map.doubts[1].candidates.pop_back();
+  const auto chosen = [&](int asked) {
+    StopsAfter observer(asked);
+    return choices(revise_links(map.views, map.poses, map.pieces, map.doubts, {}, 0.7, 1, observer));
+  };
+  EXPECT_THAT(chosen(0), ElementsAre(0, 0));
+  EXPECT_THAT(chosen(1), ElementsAre(1, kCut));
 }
 
 TEST(ReviseLinks, IsLessSureOfAPlaceThatTwoScansHoldInNoDirection) {

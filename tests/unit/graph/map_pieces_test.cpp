@@ -24,20 +24,16 @@ MapPieces away_and_back(std::mt19937& random) {
   return {poses, {0, 0, 2, 2, 0, 0}};
 }
 
-Pose2 step(const MapPieces& pieces, std::size_t link) {
-  return inverse(pieces.map_from_node()[link]) * pieces.map_from_node()[link + 1];
-}
-
 TEST(MapPieces, JoinsTheLaterPieceWhole) {
   std::mt19937 random(1);
   MapPieces pieces = away_and_back(random);
   const std::vector<Pose2> before = pieces.map_from_node();
-  const Pose2 within = step(pieces, 2);
+  const Pose2 within = pieces.step(2);
   const Pose2 a_from_b = any_pose(random);
   pieces.join(1, a_from_b);
   EXPECT_THAT(pieces.piece_of_node(), ElementsAre(0, 0, 0, 0, 0, 0));
-  EXPECT_THAT(step(pieces, 1), test::IsNearPose(a_from_b, 1e-9, 1e-9));
-  EXPECT_THAT(step(pieces, 2), test::IsNearPose(within, 1e-9, 1e-9)) << "no piece bends";
+  EXPECT_THAT(pieces.step(1), test::IsNearPose(a_from_b, 1e-9, 1e-9));
+  EXPECT_THAT(pieces.step(2), test::IsNearPose(within, 1e-9, 1e-9)) << "no piece bends";
   EXPECT_THAT(pieces.map_from_node()[5], test::IsNearPose(before[5], 1e-9, 1e-9));
 }
 
@@ -63,7 +59,7 @@ TEST(MapPieces, CarriesWhatOneLinkSaysToTheOther) {
     for (const auto& [link, parallel] : {std::pair<std::size_t, std::size_t>{1, 3}, {3, 1}}) {
       MapPieces joined = apart;
       joined.join(parallel, a_from_b);
-      EXPECT_THAT(apart.carried_to(link, parallel, a_from_b), test::IsNearPose(step(joined, link), 1e-9, 1e-9));
+      EXPECT_THAT(apart.carried_to(link, parallel, a_from_b), test::IsNearPose(joined.step(link), 1e-9, 1e-9));
     }
   }
 }

@@ -55,7 +55,7 @@ struct Balance {
 };
 
 struct RevisedLink {
-  std::size_t candidate = 0;            ///< the best; where the observer asked to stop, that of the map
+  std::size_t candidate = 0;            ///< the best, or what joins; where the observer asked to stop, that of the map
   double probability = 0.0;             ///< that it is right; 0 where nobody was asked
   bool joins = false;                   ///< the two pieces
   std::vector<Balance> said_by_others;  ///< of each candidate; empty where nobody was asked
