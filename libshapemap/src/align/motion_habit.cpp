@@ -16,7 +16,7 @@ constexpr double kAngleBin_rad = 2.0 * kPi / static_cast<double>(kAngleBins);
 constexpr double kStepKernel_m = 0.25;  ///< of long steps
 constexpr double kAngleKernel_rad = 12 * kDegree;
 
-/// Of short steps, a quarter of what is usual, if so many tell; at least this.
+/// Of short steps, half of what is usual, if so many tell; at least this.
 constexpr std::size_t kTellOfSteps = 20;
 constexpr double kLeastStepKernel_m = 0.05;
 
@@ -73,7 +73,7 @@ double kernel(std::vector<double> values, double least) {
 double least_step_kernel_m(std::vector<double> steps_m) {
   if (steps_m.size() < kTellOfSteps) return kStepKernel_m;
   std::sort(steps_m.begin(), steps_m.end());
-  return std::clamp(0.25 * steps_m[steps_m.size() / 2], kLeastStepKernel_m, kStepKernel_m);
+  return std::clamp(0.5 * steps_m[steps_m.size() / 2], kLeastStepKernel_m, kStepKernel_m);
 }
 
 /// Of steps: what would lie below 0 is mirrored there.

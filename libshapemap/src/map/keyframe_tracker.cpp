@@ -49,20 +49,21 @@ std::optional<PoseHypothesis> KeyframeTracker::follow(const ScanView& view) {
   if (!keyframe_ || options_.keyframes.step_m <= 0.0) return std::nullopt;
   if (attached_ > kDense) expected_ = step_ ? expectation_.at(last_ * *step_) : ExpectedPose{last_};
   std::optional<PoseHypothesis> pose = followed(view);
-  if (pose) {
-    go_on_by(inverse(last_) * pose->ref_from_query);
-  } else {
+  if (!pose && attached_ > kDense) pose = searched(view);
+  if (!pose) {
     forget_motion();
-    if (attached_ > kDense) pose = searched(view);
+    return std::nullopt;
   }
-  if (!pose) return std::nullopt;
+  go_on_by(inverse(last_) * pose->ref_from_query);
   if (!is_within(pose->ref_from_query, options_.keyframes.step_m, options_.keyframes.turn_rad)) return std::nullopt;
   last_ = pose->ref_from_query;
   attached_ = 1.0 - kMemory * (1.0 - attached_);
   return pose;
 }
 
+/// After a jump, as where scans were lost, the motion may be any.
 void KeyframeTracker::go_on_by(const Pose2& step) {
+  if (!is_within(step, kLongestStep_m, kLargestTurn_rad)) return forget_motion();
   if (step_ && !is_within(step, kStands_m, kStands_rad)) expectation_.learn(inverse(*step_) * step);
   step_ = step;
 }
