@@ -60,7 +60,8 @@ class FieldReader {
     std::string_view word = words_.next();
     for (; !word.empty() && !is_list(word); word = words_.next()) {
       const std::optional<double> value = parse_number(word);
-      if (!value) throw lines_.error(what + " " + std::to_string(values.size() + 1) + " is '" + std::string(word) + "'");
+      if (!value)
+        throw lines_.error(what + " " + std::to_string(values.size() + 1) + " is '" + std::string(word) + "'");
       values.push_back(*value * unit);
     }
     after_list_ = word;

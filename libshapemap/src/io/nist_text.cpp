@@ -80,6 +80,7 @@ class NistReader {
     else
       throw lines_.error("unit of angle is '" + std::string(angle) + "', expected deg or rad");
     expect_end(words, lines_);
+    log_.states_range_unit = true;
   }
 
   double number(Words& words, const char* what) {
