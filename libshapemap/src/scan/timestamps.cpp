@@ -104,7 +104,7 @@ std::size_t sort_swapped(std::vector<Position>& positions, Times& times_s) {
   std::vector<Position> sorted;
   sorted.reserve(positions.size());
   for (std::size_t i = 0; i < order->size(); ++i) {
-    num_moved += (*order)[i] == i ? 0 : 1;
+    if ((*order)[i] != i) ++num_moved;
     sorted.push_back(std::move(positions[(*order)[i]]));
   }
   positions = std::move(sorted);
