@@ -36,6 +36,5 @@ class BagContent:
     damages: list[str] = field(default_factory=list)
 
     def cut_at(self, byte: int) -> str:
-        return (
-            f"the bag is cut off at byte {byte}; the {counted(sum(self.counts.values()), 'message')} before it are used"
-        )
+        """What to say of a bag that ends there; all before it is used."""
+        return f"the bag is cut off at byte {byte}, after {counted(sum(self.counts.values()), 'message')}"

@@ -47,10 +47,10 @@ class _Decoded:
 
 def bag_log(content: BagContent, options: BagOptions) -> LaserLog:
     """Raises UnknownLogError where the bag has no laser scans, or not those that are asked for."""
-    topics = chosen_topics(content.counts, options.topics)
+    topics = chosen_topics(content, options.topics)
     found = _decode(content, topics, options.echo)
     if not found.scans:
-        raise UnknownLogError(f"no readable laser scan{_ending(content, found)}")
+        raise UnknownLogError(f"no readable laser scan{_ending([*content.damages, *_unreadable_notes(found)])}")
     if not any(len(scan.ranges_m) for scans in found.scans.values() for _, scan in scans):
         raise UnknownLogError("none of the laser scans has a reading")
     lasers = _lasers(found)
@@ -73,12 +73,13 @@ def bag_log(content: BagContent, options: BagOptions) -> LaserLog:
     return log
 
 
-def chosen_topics(counts: Mapping[tuple[str, str], int], wanted: tuple[str, ...]) -> set[str]:
+def chosen_topics(content: BagContent, wanted: tuple[str, ...]) -> set[str]:
     """The topics of lasers. Raises UnknownLogError where there is none, or where one that is wanted is none."""
-    lasers = {topic for topic, type_name in counts if type_name in LASERS}
+    lasers = {topic for topic, type_name in content.counts if type_name in LASERS}
     if not lasers:
-        raise UnknownLogError(f"no laser scans (LaserScan, MultiEchoLaserScan); the bag has {_listed(counts)}")
-    topics = {topic for topic, _ in counts}
+        has = f"{_listed(content.counts)}{_ending(content.damages)}"
+        raise UnknownLogError(f"no laser scans (LaserScan, MultiEchoLaserScan); the bag has {has}")
+    topics = {topic for topic, _ in content.counts}
     named = {topic if topic in topics or f"/{topic}" not in topics else f"/{topic}" for topic in wanted}
     for topic in sorted(named - lasers):
         what = "no laser scans on" if topic in topics else "no topic"
@@ -179,6 +180,5 @@ def _left_out_notes(content: BagContent, wanted: tuple[str, ...]) -> list[str]:
     return [] if wanted else [f"{printable(topic)}: left out, only laser scans are read" for topic in left_out]
 
 
-def _ending(content: BagContent, found: _Decoded) -> str:
-    reasons = [*content.damages, *_unreadable_notes(found)]
+def _ending(reasons: list[str]) -> str:
     return f" ({'; '.join(reasons)})" if reasons else ""

@@ -42,10 +42,13 @@ def is_wanted(type_name: str) -> bool:
 @cache
 def _store(encoding: str) -> Any:
     try:
-        from rosbags.typesys import Stores, get_typestore
+        from rosbags.typesys import Stores, get_types_from_msg, get_typestore
     except ImportError:
         raise UnknownLogError("ROS bags need the Python package rosbags (pip install rosbags)") from None
-    return get_typestore(Stores.ROS1_NOETIC if encoding == "ros1" else Stores.LATEST)
+    store = get_typestore(Stores.ROS1_NOETIC if encoding == "ros1" else Stores.LATEST)
+    if TRANSFORMS not in store.types:
+        store.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", TRANSFORMS))
+    return store
 
 
 def _decoder(channel: Channel) -> Callable[[bytes], Any]:
@@ -69,7 +72,8 @@ def decoded(message: RawMessage) -> Any:
 
 
 def stamp_ns(header: Any) -> int:
-    return int(header.stamp.sec) * 10**9 + int(header.stamp.nanosec)
+    """ROS 1 counts seconds without a sign, which the types of ROS 2 do not know."""
+    return int(header.stamp.sec) % 2**32 * 10**9 + int(header.stamp.nanosec)
 
 
 def frame_name(frame: str) -> str:

@@ -144,7 +144,8 @@ def _checked(scans: list[LaserScan], num_bad: int) -> LaserLog:
 
 
 def points(text: str, is_clockwise: bool) -> LaserLog:
-    """A point a line, in the order in which they were measured. A sweep ends where the angle jumps back."""
+    """A point a line, in the order in which they were measured. A sweep ends where the angle jumps back, against the
+    usual direction and by more than half of all that is swept."""
     names = column_names(text)
     time, angle = _find(names, TIME_NAMES), _find(names, ANGLE_NAMES)
     distance, quality = _find(names, DISTANCE_NAMES), _find(names, QUALITY_NAMES)
@@ -154,7 +155,9 @@ def points(text: str, is_clockwise: bool) -> LaserLog:
     times_ns = np.round(rows[:, time] * _unit(names[time], NANOSECONDS, "s")).astype(np.int64)
     angles = rows[:, angle] * _unit(names[angle], RADIANS, "deg")
     ranges = rows[:, distance] * _unit(names[distance], METRES, "mm")
-    jumps = np.flatnonzero(np.abs(np.diff(angles)) > np.pi) + 1
+    steps = np.diff(angles)
+    backwards = -steps if np.sum(steps > 0.0) >= np.sum(steps < 0.0) else steps
+    jumps = np.flatnonzero(backwards > 0.5 * np.ptp(angles)) + 1
     bounds = [0, *jumps.tolist(), len(rows)]
     scans = []
     for begin, end in pairwise(bounds):

@@ -117,7 +117,8 @@ def read_scan_log(path: Path) -> ScanLog:
     counts = {len(ranges) for position in draft.ranges for ranges in position}
     if len(counts) != 1:
         raise ValueError(f"{path}: expected scans with as many beams each, found {sorted(counts)}")
-    angles = draft.rad * (sensor.get("first_angle", 0.0) + sensor["angle_step"] * np.arange(counts.pop()))
+    steps = np.arange(counts.pop(), dtype=np.float64)
+    angles: Array = draft.rad * (sensor.get("first_angle", 0.0) + sensor["angle_step"] * steps)
     return ScanLog(
         np.array(draft.times),
         np.array(draft.references) if len(draft.references) == len(draft.times) else None,
