@@ -169,7 +169,7 @@ def points(text: str, is_clockwise: bool) -> LaserLog:
                 ranges_m=ranges[part],
                 intensities=rows[part, quality] if quality >= 0 else no_values(),
                 angles_rad=-angles[part] if is_clockwise else angles[part],
-                times_s=1e-9 * (times_ns[part] - times_ns[begin]),
+                times_s=np.round(1e-9 * (times_ns[part] - times_ns[begin]), 9),
             )
         )
     log = _checked(scans, num_bad)

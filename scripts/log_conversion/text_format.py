@@ -11,7 +11,6 @@ import numpy as np
 from .model import Array, Laser, LaserLog, LaserScan, Mount
 
 MOST_DECIMALS = 6
-CLOSE_M = 1e-9  # double precision: what rounding leaves of 0.001 * 1643
 # Fields that a sensor and a scan may have, and their names here.
 FIELDS = {
     "first_angle": "first_angle_rad",
@@ -65,13 +64,13 @@ def sensor_names(lasers: list[Laser]) -> list[str]:
 
 
 def header_of(laser: Laser) -> LaserScan:
-    """The scan whose header stands for all of the laser: the first with readings."""
-    return next((scan for scan in laser.scans if len(scan.ranges_m)), laser.scans[0])
+    """The scan whose header stands for all of the laser: the first with readings that have a place."""
+    return next((scan for scan in laser.scans if len(scan.ranges_m) and has_place(scan)), laser.scans[0])
 
 
 def sensor_line(laser: Laser, name: str, header: LaserScan) -> str:
-    counts = {len(scan.ranges_m) for scan in laser.scans}
-    beams = str(counts.pop()) if len(counts) == 1 else "any"
+    counts = {len(scan.ranges_m) if has_place(scan) else 0 for scan in laser.scans}
+    beams = str(counts.pop()) if len(counts) == 1 and counts != {0} else "any"
     words = [f"sensor {name} beams {beams}", *_field_words(header, None)]
     if laser.mount is not None and laser.mount != Mount():
         words.append("mount " + " ".join(value_text(value) for value in laser.mount.values()))
@@ -94,21 +93,28 @@ def _field_words(scan: LaserScan, header: LaserScan | None) -> list[str]:
     return words
 
 
+def has_place(scan: LaserScan) -> bool:
+    """Whether the first angle is a number, without which readings have no place: the format knows no other."""
+    return scan.angles_rad is not None or bool(np.isfinite(scan.first_angle_rad))
+
+
 def _is_nan(value: float | None) -> bool:
     return value is not None and np.isnan(value)
 
 
 def scan_line(name: str, scan: LaserScan, header: LaserScan, offset_ns: int) -> str:
     words = [f"scan {name} heading 0"]
+    if not has_place(scan):
+        return f"{words[0]} ranges"
     if offset_ns:
         words.append(f"time {seconds(offset_ns)}")
     words += _field_words(scan, header)
     for word, values in (("angles", scan.angles_rad), ("times", scan.times_s)):
         if values is not None and len(values):
             words.append(f"{word} {values_text(values)}")
-    words.append(f"ranges {values_text(scan.ranges_m)}".rstrip())
+    words.append(f"ranges {values_text(scan.ranges_m.astype(np.float32))}".rstrip())
     if len(scan.intensities) and len(scan.intensities) == len(scan.ranges_m):
-        words.append(f"intensities {values_text(scan.intensities)}")
+        words.append(f"intensities {values_text(scan.intensities.astype(np.float32))}")
     return " ".join(words)
 
 
@@ -136,8 +142,6 @@ def values_text(values: Array) -> str:
         wide = np.where(np.isneginf(wide), np.nan, wide)
     finite = wide[np.isfinite(wide)]
     for decimals in range(2, MOST_DECIMALS + 1):
-        rounded = np.round(finite, decimals)
-        is_single = values.dtype == np.float32
-        if (rounded.astype(np.float32) == finite if is_single else np.abs(rounded - finite) < CLOSE_M).all():
+        if (np.round(finite, decimals).astype(values.dtype) == finite).all():
             return " ".join(map(repr, np.round(wide, decimals).tolist()))
     return " ".join(f"{value:.9g}" for value in wide.tolist())
