@@ -58,7 +58,7 @@ def oddities(laser: Laser, uses_received_times: bool) -> list[str]:
         (sum(not _is_good(s.angle_step_rad) and s.angles_rad is None for s in scans), "no angle step"),
         (
             sum(not np.isfinite(s.first_angle_rad) for s in scans),
-            "no first angle, without which their readings are left out",
+            "no first angle: their readings are left out",
         ),
         (sum(not np.isfinite(s.min_range_m) or s.min_range_m < 0.0 for s in scans), "no minimum range"),
         (sum(len(s.intensities) not in (0, len(s.ranges_m)) for s in scans), "too many or too few intensities"),

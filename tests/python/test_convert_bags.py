@@ -227,6 +227,11 @@ def test_topics_are_chosen(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     assert "no laser scans on /imu" in refusal(bag, capsys, "--topic", "/imu")
 
 
+def test_a_laser_without_any_reading_beside_another(tmp_path: Path) -> None:
+    log = converted(write_bag(tmp_path / "walk.bag", [scan(1.0), scan(1.0, [], topic="/dead")]))
+    assert log.sensors["dead"].startswith("beams any ")
+
+
 def test_names_from_a_bag_cannot_write_to_the_terminal(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     name = "/sc\x1b[31man #1" + "x" * 200
     log = converted(write_bag(tmp_path / "walk.bag", [scan(1.0, topic=name)]))
