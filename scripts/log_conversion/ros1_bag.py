@@ -154,6 +154,8 @@ class _Scanner:
         elif record.op == MESSAGE and record.is_whole:
             self._take_message(record)
         elif record.op == BAG_HEADER:
+            if record.fields.get(b"encryptor"):
+                raise UnknownLogError("an encrypted bag")
             self.index_position = int.from_bytes(record.fields.get(b"index_pos", b""), "little")
         elif record.op not in (MESSAGE, INDEX, CHUNK_INFO, CONNECTION):
             raise BrokenRecordError

@@ -13,7 +13,8 @@ from .compressed import ZSTD_MAGIC, salvage, zstd_stream
 from .model import UnknownLogError
 
 MAGIC = b"SQLite format 3\x00"
-READABLE = "cdr"
+# SQLite's errors; damaged names come with bytes that are no text, also within errors.
+DAMAGE = (sqlite3.Error, UnicodeDecodeError, OverflowError)
 
 
 def read_sqlite_bag(path: Path, data: bytes | None, wants: Callable[[str], bool]) -> BagContent:
@@ -21,8 +22,9 @@ def read_sqlite_bag(path: Path, data: bytes | None, wants: Callable[[str], bool]
     content = BagContent()
     try:
         connection = _connection(path, data)
-    except sqlite3.Error as error:
+    except DAMAGE as error:
         raise UnknownLogError(f"an SQLite file that cannot be opened: {error}") from None
+    connection.text_factory = lambda raw: raw.decode(errors="replace")
     try:
         channels = _channels(connection)
         _read_messages(connection, channels, wants, content)
@@ -46,7 +48,7 @@ def _connection(path: Path, data: bytes | None) -> sqlite3.Connection:
 def _channels(connection: sqlite3.Connection) -> dict[int, Channel]:
     try:
         rows = connection.execute("SELECT id, name, type, serialization_format FROM topics").fetchall()
-    except sqlite3.Error as error:
+    except DAMAGE as error:
         raise UnknownLogError(f"an SQLite file, but no ROS 2 bag: {error}") from None
     return {row[0]: Channel(str(row[1]), str(row[2]), encoding=str(row[3])) for row in rows}
 
@@ -60,14 +62,14 @@ def _read_messages(
         for topic_id, received_ns, data in connection.execute("SELECT topic_id, timestamp, data FROM messages"):
             num_rows += 1
             channel = channels.get(topic_id)
-            if channel is None or not isinstance(data, bytes):
+            if channel is None or not isinstance(data, bytes) or not isinstance(received_ns, int):
                 continue
             key = channel.topic, channel.type_name
             content.counts[key] = content.counts.get(key, 0) + 1
             if wants(channel.type_name):
-                content.messages.append(RawMessage(channel, int(received_ns), unpacked(data)))
-    except sqlite3.Error as error:
-        content.damages.append(f"the bag is cut off or damaged after {num_rows} messages ({error})")
+                content.messages.append(RawMessage(channel, received_ns, unpacked(data)))
+    except DAMAGE as error:
+        content.damages.append(f"the bag is cut off or damaged after {num_rows} messages")
 
 
 def unpacked(data: bytes) -> bytes:

@@ -147,6 +147,13 @@ def test_other_files_are_refused_in_one_line(tmp_path: Path, capsys: pytest.Capt
     assert convert_logs.main([str(tmp_path / "missing"), str(tmp_path / "out")]) == 1
 
 
+def test_names_in_a_database_that_are_no_text(tmp_path: Path) -> None:
+    folder = write_ros2_bag(tmp_path / "walk", messages())
+    data = next(folder.glob("*.db3")).read_bytes()
+    (tmp_path / "bag").write_bytes(data.replace(b"/scan", b"/s\xffan"))
+    assert len(converted(tmp_path / "bag").scans) == NUM_SCANS
+
+
 def test_another_database_is_no_bag(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     import sqlite3
 
