@@ -48,18 +48,18 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     )
     parser.add_argument("log", type=Path, metavar="IN")
     parser.add_argument("out", type=Path, metavar="OUT", help="the log in shapemap's text format")
-    bags = parser.add_argument_group("bags")
-    bags.add_argument(
-        "--topic", action="append", default=[], metavar="NAME", help="of a laser; may be repeated (default: all lasers)"
-    )
-    bags.add_argument(
+    parser.add_argument(
         "--mount",
         action="append",
         default=[],
         type=named_mount,
         metavar="NAME=X,Y,Z,YAW,PITCH,ROLL",
-        help="where the laser of a topic sits on the robot, in metres and degrees, instead of what the transforms of "
-        "the bag say; roll 180 is upside down; may be repeated",
+        help="where a laser sits on the robot, in metres and degrees, instead of what the transforms of a bag say; "
+        "NAME is its topic in bags and 'laser' otherwise; roll 180 is upside down; may be repeated",
+    )
+    bags = parser.add_argument_group("bags")
+    bags.add_argument(
+        "--topic", action="append", default=[], metavar="NAME", help="of a laser; may be repeated (default: all lasers)"
     )
     bags.add_argument(
         "--echo",
@@ -84,9 +84,10 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
 
 def read_options(arguments: argparse.Namespace) -> ReadOptions:
     return ReadOptions(
-        bag=BagOptions(tuple(arguments.topic), arguments.echo, dict(arguments.mount)),
+        bag=BagOptions(tuple(arguments.topic), arguments.echo),
         pose_lines=PoseLineOptions(arguments.angle_step_deg, arguments.max_range_m, arguments.min_range_m),
         is_clockwise=arguments.turn == "clockwise",
+        mounts=dict(arguments.mount),
     )
 
 

@@ -23,7 +23,8 @@ from shapemap_sim.poses import Array
 from .datasets import WITH_POSES, DatasetError, LogSpec
 from .relations import RelationFile, ScanIndex, read_relations
 
-RECORDINGS = (".bag", ".dat.gz", ".txt.gz", ".dat")  # what scripts/convert_logs.py reads
+# What scripts/convert_logs.py reads.
+RECORDINGS = (".bag", ".bag.gz", ".db3", ".mcap", ".csv", ".csv.gz", ".dat.gz", ".txt.gz", ".dat")
 
 
 @dataclass(frozen=True)

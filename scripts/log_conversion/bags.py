@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .bag_content import BagContent, RawMessage
+from .lasers import mount_as_given, mount_by_transforms, twin_notes
 from .model import Laser, LaserLog, LaserScan, Moment, Mount, UnknownLogError, counted, printable
 from .moments import group
 from .ros_messages import (
@@ -29,11 +30,10 @@ MOST_LISTED = 8  # topics in an error
 
 @dataclass(frozen=True)
 class BagOptions:
-    """`topics` are those of the lasers that are wanted, all if there is none; `mounts` are by topic or laser name."""
+    """`topics` are those of the lasers that are wanted, all if there is none."""
 
     topics: tuple[str, ...] = ()
     echo: Echo = Echo.FIRST
-    mounts: Mapping[str, Mount] = field(default_factory=dict)
 
 
 @dataclass
@@ -45,8 +45,9 @@ class _Decoded:
     unreadable: dict[str, int] = field(default_factory=dict)
 
 
-def bag_log(content: BagContent, options: BagOptions) -> LaserLog:
-    """Raises UnknownLogError where the bag has no laser scans, or not those that are asked for."""
+def bag_log(content: BagContent, options: BagOptions, mounts: Mapping[str, Mount]) -> LaserLog:
+    """`mounts` are by the name of the laser and override the transforms of the bag. Raises UnknownLogError where the bag
+    has no laser scans, or not those that are asked for."""
     topics = chosen_topics(content, options.topics)
     found = _decode(content, topics, options.echo)
     if not found.scans:
@@ -61,7 +62,8 @@ def bag_log(content: BagContent, options: BagOptions) -> LaserLog:
         notes.append("the headers have no times: the times at which the messages were received are used")
     if any(type_name == MULTI_ECHO for topic, type_name in content.counts if topic in topics):
         notes.append(f"of several echoes of a beam, the {options.echo} counts; --echo changes that")
-    _mount(lasers, found.fixed, options.mounts, notes)
+    mount_as_given(lasers, mounts)
+    notes += [*mount_by_transforms(lasers, found.fixed), *twin_notes(lasers)]
     log = LaserLog(lasers, [], notes, uses_received_times=uses_received)
     log.moments = _moments(log, [[place for place, _ in found.scans[key]] for key in found.scans])
     if len(lasers) > 1:
@@ -137,26 +139,6 @@ def needs_received_times(lasers: list[Laser]) -> bool:
     """The clocks of headers and of receiving differ, so that all lasers use the same."""
     has_none = any(all(scan.stamp_ns == 0 for scan in laser.scans) for laser in lasers)
     return has_none and any(scan.received_ns for laser in lasers for scan in laser.scans)
-
-
-def _mount(lasers: list[Laser], fixed: FixedTransforms, given: Mapping[str, Mount], notes: list[str]) -> None:
-    """Raises UnknownLogError for a mount of no laser."""
-    names = {laser.name for laser in lasers}
-    for name in given:
-        if name.removeprefix("/") not in names:
-            known = ", ".join(printable(n) for n in sorted(names))
-            raise UnknownLogError(f"--mount {printable(name)}: no such laser; there is {known}")
-    by_name = {name.removeprefix("/"): mount for name, mount in given.items()}
-    base, by_frame = fixed.mounts([laser.frame for laser in lasers if laser.name not in by_name])
-    for laser in lasers:
-        laser.mount = by_name.get(laser.name, by_frame.get(laser.frame))
-        if laser.mount is None:
-            notes.append(
-                f"{printable(laser.name)}: no transform tells its mount, which is taken as zero; "
-                f"--mount {printable(laser.name)}=x,y,z,yaw,pitch,roll (metres, degrees) tells it"
-            )
-        elif laser.name not in by_name:
-            notes.append(f"{printable(laser.name)}: mounted as the transform from {printable(base)} tells")
 
 
 def _moments(log: LaserLog, places: list[list[int]]) -> list[Moment]:

@@ -16,6 +16,7 @@ from .model import UnknownLogError
 GZIP_MAGIC = b"\x1f\x8b"
 ZSTD_MAGIC = b"\x28\xb5\x2f\xfd"
 GZIP_WINDOW = 31  # zlib reads gzip's header and checksum
+COMES_WITH_ROSBAGS = "need a package that comes with the Python package rosbags (pip install rosbags)"
 PIECES = (1 << 20, 1 << 10, 1)  # bytes; smaller ones where a larger piece is damaged
 
 Bytes = bytes | mmap.mmap
@@ -37,9 +38,11 @@ def file_content(path: Path) -> Content:
         head = file.read(len(ZSTD_MAGIC))
         if not head:
             raise UnknownLogError(f"{path}: empty")
-        if not head.startswith((GZIP_MAGIC, ZSTD_MAGIC)):
+        if path.is_file() and not head.startswith((GZIP_MAGIC, ZSTD_MAGIC)):
             return Content(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ))
-    packed = path.read_bytes()
+        packed = head + file.read()
+    if not head.startswith((GZIP_MAGIC, ZSTD_MAGIC)):
+        return Content(packed)  # of a pipe
     new = gzip_stream if head.startswith(GZIP_MAGIC) else zstd_stream()
     data, end, is_whole = salvage(packed, new)
     if not data:
@@ -52,8 +55,10 @@ def gzip_stream() -> Any:
 
 
 def zstd_stream() -> NewStream:
-    from backports import zstd  # comes with rosbags
-
+    try:
+        from backports import zstd
+    except ImportError:
+        raise UnknownLogError(f"zstd data {COMES_WITH_ROSBAGS}") from None
     return zstd.ZstdDecompressor
 
 
@@ -66,8 +71,10 @@ def chunk_stream(compression: str) -> NewStream | None:
     if compression == "zstd":
         return zstd_stream()
     if compression == "lz4":
-        from lz4.frame import LZ4FrameDecompressor  # type: ignore[import-untyped]  # comes with rosbags
-
+        try:
+            from lz4.frame import LZ4FrameDecompressor  # type: ignore[import-untyped]
+        except ImportError:
+            raise UnknownLogError(f"lz4 data {COMES_WITH_ROSBAGS}") from None
         return LZ4FrameDecompressor
     raise UnknownLogError(f"compression '{compression[:20]}' is none of none, bz2, lz4, zstd")
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -11,7 +11,8 @@ from . import mcap_bag, ros1_bag, sqlite_bag
 from .bag_content import BagContent
 from .bags import BagOptions, bag_log
 from .compressed import Content, file_content
-from .model import LaserLog, UnknownLogError
+from .lasers import mount_as_given
+from .model import LaserLog, Mount, UnknownLogError
 from .number_lines import PoseLineOptions, number_log
 from .ros_messages import is_wanted
 from .tables import is_table, table_log
@@ -26,6 +27,7 @@ class ReadOptions:
     bag: BagOptions = field(default_factory=BagOptions)
     pose_lines: PoseLineOptions = field(default_factory=PoseLineOptions)
     is_clockwise: bool = True  # the angles of points
+    mounts: Mapping[str, Mount] = field(default_factory=dict)  # by the name of the laser
 
 
 def read_log(path: Path, options: ReadOptions) -> LaserLog:
@@ -42,9 +44,10 @@ def _file_log(path: Path, options: ReadOptions) -> LaserLog:
     content = bag_content(path, file)
     if content is not None:
         content.damages[:0] = [file.damage] if file.damage else []
-        return bag_log(content, options.bag)
+        return bag_log(content, options.bag, options.mounts)
     text = file.data[:].decode("utf-8", errors="replace")
     log = table_log(text, options.is_clockwise) if is_table(text) else number_log(text, options.pose_lines)
+    mount_as_given(log.lasers, options.mounts)
     if file.damage:
         log.notes.insert(0, file.damage)
     return log
@@ -79,4 +82,4 @@ def _folder_log(path: Path, options: ReadOptions) -> LaserLog:
             whole.counts[key] = whole.counts.get(key, 0) + count
         whole.damages += [f"{name.name}: {text}" for text in ([file.damage] if file.damage else []) + content.damages]
     whole.messages.sort(key=lambda message: message.received_ns)
-    return bag_log(whole, options.bag)
+    return bag_log(whole, options.bag, options.mounts)

@@ -68,7 +68,7 @@ def _read_messages(
             content.counts[key] = content.counts.get(key, 0) + 1
             if wants(channel.type_name):
                 content.messages.append(RawMessage(channel, received_ns, unpacked(data)))
-    except DAMAGE as error:
+    except DAMAGE:
         content.damages.append(f"the bag is cut off or damaged after {num_rows} messages")
 
 

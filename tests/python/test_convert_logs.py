@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import gzip
+import os
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -45,6 +47,15 @@ def test_poses_become_references_and_a_line_cut_short_is_left_out(
     np.testing.assert_allclose(log.map_from_robot, [[1.0, -2.0, 1.5], [1.1, -2.0, 1.4]], atol=1e-6)
     np.testing.assert_allclose(np.rad2deg(log.beam_angles_rad), [0.5, 0.0, -0.5])  # clockwise
     np.testing.assert_array_equal(log.ranges[:, 0], [[np.nan, 0.5, np.nan], [0.4, 0.5, 0.6]])
+
+
+def test_a_log_from_a_pipe(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    writer = threading.Thread(target=pipe.write_text, args=("1000 0 0 500 600\n",))
+    writer.start()
+    assert converted(pipe, tmp_path, "--angle-step-deg=1").ranges.shape == (1, 1, 2)
+    writer.join()
 
 
 @pytest.mark.parametrize("text", ["", "FLASER 3 1 2 3\n", "1 2 3 4 5\n"])

@@ -111,6 +111,22 @@ def test_mounts_by_option(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
             convert_logs.parse_arguments(["a", "b", "--mount", text])
 
 
+def test_a_mount_of_a_log_that_is_no_bag(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "points.csv"
+    path.write_text("time_s,angle_deg,distance_mm\n1,2,3\n1.1,4,5\n", encoding="utf-8")
+    assert mount(converted(path, "--mount", "laser=0,0,0,0,0,180"), "laser")[5] == pytest.approx(math.pi)
+    assert "there is laser" in refusal(path, capsys, "--mount", "scan=0,0,0,0,0,180")
+
+
+def test_a_topic_that_is_made_from_another_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    messages = [scan(1.0 + k, topic=topic) for k in range(4) for topic in ("/scan", "/scan_filtered")]
+    converted(write_bag(tmp_path / "twins.bag", messages))
+    assert "scan and scan_filtered have the same frame and times" in capsys.readouterr().err
+    messages = [scan(1.0 + k, topic=name, frame=name) for k in range(4) for name in ("/front", "/rear")]
+    converted(write_bag(tmp_path / "two.bag", messages))
+    assert "same frame" not in capsys.readouterr().err
+
+
 def test_without_transforms_a_warning_says_what_to_do(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = converted(write_bag(tmp_path / "walk.bag", [scan(1.0)]))
     assert "mount" not in log.sensors["scan"]
