@@ -46,8 +46,10 @@ class _Decoded:
 
 
 def bag_log(content: BagContent, options: BagOptions, mounts: Mapping[str, Mount]) -> LaserLog:
-    """`mounts` are by the name of the laser and override the transforms of the bag. Raises UnknownLogError where the bag
-    has no laser scans, or not those that are asked for."""
+    """`mounts` are by the name of the laser and override the transforms of the bag.
+
+    Raises UnknownLogError where the bag has no laser scans, or not those that are asked for.
+    """
     topics = chosen_topics(content, options.topics)
     found = _decode(content, topics, options.echo)
     if not found.scans:
