@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
 from .bag_content import BagContent, Channel, RawMessage
 from .compressed import Bytes, chunk_stream, salvage
-from .model import UnknownLogError
+from .model import UnknownLogError, counted
 
 MAGIC = b"#ROSBAG V"
 VERSION = b"2.0\n"
@@ -100,6 +101,7 @@ class _Scanner:
         self.channels: dict[bytes, Channel] = {}
         self.content = BagContent()
         self.index_position = 0
+        self.num_unknown = 0  # messages
         self.last_whole = 0  # where the last whole record ends, in a chunk that is not compressed also within it
 
     def scan(self, start: int) -> BagContent:
@@ -114,6 +116,9 @@ class _Scanner:
                 position = self.last_whole = record.end
             except (BrokenRecordError, UnicodeDecodeError, struct.error):
                 position = self._after_damage(position)
+        if self.num_unknown:
+            unknown = counted(self.num_unknown, "message")
+            self.content.damages.append(f"left out {unknown} whose topic is lost")
         if self.index_position == 0:
             self.content.damages.append("the bag was never closed")
         elif self.index_position >= len(self.view) and not self.content.damages:
@@ -157,8 +162,20 @@ class _Scanner:
             if record.fields.get(b"encryptor"):
                 raise UnknownLogError("an encrypted bag")
             self.index_position = int.from_bytes(record.fields.get(b"index_pos", b""), "little")
+            self._take_index()
         elif record.op not in (MESSAGE, INDEX, CHUNK_INFO, CONNECTION):
             raise BrokenRecordError
+
+    def _take_index(self) -> None:
+        """The topics that the end of the bag lists, if it is there: the chunk that lists them first may be damaged."""
+        position = self.index_position
+        with suppress(BrokenRecordError, UnicodeDecodeError):
+            while 0 < position < len(self.view):
+                record = read_record(self.view, position)
+                if record.op != CONNECTION or not record.is_whole:
+                    return
+                self._take_connection(record)
+                position = record.end
 
     def _take_chunk(self, chunk: Record) -> None:
         new = chunk_stream(chunk.fields.get(b"compression", b"none").decode("ascii", errors="replace"))
@@ -193,7 +210,8 @@ class _Scanner:
     def _take_message(self, record: Record) -> None:
         channel = self.channels.get(record.fields.get(b"conn", b""))
         if channel is None:
-            raise BrokenRecordError
+            self.num_unknown += 1
+            return
         key = channel.topic, channel.type_name
         self.content.counts[key] = self.content.counts.get(key, 0) + 1
         if self.wants(channel.type_name):

@@ -114,6 +114,21 @@ def test_no_damage_leads_to_a_traceback(kind: str, tmp_path: Path, capsys: pytes
     assert 0 in codes
 
 
+@pytest.mark.parametrize("has_index", [False, True])
+def test_the_chunk_that_names_the_topics_is_damaged(
+    has_index: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bag = write_bag(tmp_path / "walk.bag", messages(), "bz2", chunk_bytes=400)
+    data = bytearray(bag.read_bytes())
+    second = data.index(b"compression=", data.index(b"compression=") + 1)  # the scans begin there
+    data[second + 60 : second + 100] = bytes(40)
+    bag.write_bytes(data if has_index else data[: data.rindex(b"compression=") - 8])
+    if has_index:
+        assert {one.ranges[0] for one in converted(bag).scans} >= set(map(float, range(8, NUM_SCANS + 1)))
+    else:
+        assert "messages whose topic is lost" in refusal(bag, capsys)
+
+
 def test_a_message_that_cannot_be_read_is_left_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     bag = write_bag(tmp_path / "walk.bag", messages())
     data = bag.read_bytes()
