@@ -34,7 +34,8 @@ def mount_by_transforms(lasers: list[Laser], fixed: FixedTransforms) -> list[str
         laser.mount = by_frame.get(laser.frame)
         if laser.mount is None:
             option = f"--mount {name}=x,y,z,yaw,pitch,roll (metres, degrees)"
-            notes.append(f"{name}: no transform tells its mount, which is taken as zero; {option} tells it")
+            danger = ", and the map is wrong if it is not" if len(lasers) > 1 else ""
+            notes.append(f"{name}: no transform tells its mount, which is taken as zero{danger}; {option} tells it")
         else:
             notes.append(f"{name}: mounted as the transform from {printable(base)} tells")
     return notes
