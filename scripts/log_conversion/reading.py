@@ -14,8 +14,9 @@ from .compressed import Content, file_content
 from .lasers import mount_as_given
 from .model import LaserLog, Mount, UnknownLogError
 from .number_lines import PoseLineOptions, number_log
+from .point_tables import is_point_table, point_log
+from .printed_messages import is_printed, printed_messages
 from .ros_messages import is_wanted
-from .tables import is_table, table_log
 
 BAG_ENDINGS = (".db3", ".mcap", ".db3.zstd", ".mcap.zstd", ".db3.gz", ".mcap.gz")
 
@@ -46,7 +47,12 @@ def _file_log(path: Path, options: ReadOptions) -> LaserLog:
         content.damages[:0] = [file.damage] if file.damage else []
         return bag_log(content, options.bag, options.mounts)
     text = file.data[:].decode("utf-8", errors="replace")
-    log = table_log(text, options.is_clockwise) if is_table(text) else number_log(text, options.pose_lines)
+    if is_printed(text):
+        log = printed_messages(text)
+    elif is_point_table(text):
+        log = point_log(text, options.is_clockwise)
+    else:
+        log = number_log(text, options.pose_lines)
     mount_as_given(log.lasers, options.mounts)
     if file.damage:
         log.notes.insert(0, file.damage)

@@ -86,11 +86,25 @@ def test_points_in_other_units_that_turn_the_other_way(tmp_path: Path) -> None:
     assert log.scans[1].words["angles"].split() == ["0.1", "3.0", "6.2"]
 
 
+@pytest.mark.parametrize("separator", [",", ";", "\t", " "])
+def test_points_without_times(separator: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "points.txt"
+    rows = [separator.join(map(str, row)) for row in [(0, 1000), (90, "nan"), (180, 0), (10, 1500), ("nan", 9)]]
+    path.write_text("\n".join([f"# angle{separator}distance", *rows]) + "\n", encoding="utf-8")
+    log = converted(path)
+    assert log.times == ["0.0", "1.0"]
+    assert [one.words["ranges"] for one in log.scans] == ["1.0 nan 0.0", "1.5"]
+    assert all("times" not in one.words for one in log.scans)
+    said = capsys.readouterr().err
+    assert "left out 1 line that cannot be read" in said
+    assert "a sweep is taken to last a second" in said
+
+
 @pytest.mark.parametrize(
     "text",
     [
         "time_s,angle_deg,distance_mm\n",
-        "angle_deg,distance_mm\n1,2\n",
+        "angle_deg,speed\n1,2\n",
         "time_s,angle_deg,distance_mm\n1,2\n",
         "%time,field.angle_min\n1,2\n",
         printed(2, 0, [[]]),
