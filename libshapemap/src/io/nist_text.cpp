@@ -129,6 +129,7 @@ class NistReader {
     };
     warn(oddities_.num_by_step, "have an angle_step and a last_angle that contradict each other; the step is used");
     warn(oddities_.num_by_limits, "have an angle_step that cannot be; first and last angle are used");
+    warn(oddities_.num_without, "have angles that cannot be, and are left without readings");
   }
 
   /// A position that was announced but has no scan, be it that its laser was not asked for or that the file ends.

@@ -72,6 +72,19 @@ TEST_F(NistScan, HeadersThatContradictThemselvesAreMendedAndCounted) {
                                         HasSubstr("2 scans have an angle_step that cannot be")));
 }
 
+TEST_F(NistScan, WithImpossibleAnglesOfItsOwnIsLeftWithoutReadings) {
+  const Log log = read(
+      "sensor l beams any angle_step 1\nposition 0\nscan l heading 0 ranges 1 2\n"
+      "position 1\nscan l heading 0 angle_step 0 last_angle nan ranges 1 2 intensities 1 2\n"
+      "position 2\nscan l heading 0 first_angle nan ranges 1 2\n");
+  ASSERT_EQ(log.positions.size(), 3U);
+  EXPECT_EQ(log.positions[0].sub_scans[0].ranges_m.size(), 2U);
+  EXPECT_THAT(log.positions[1].sub_scans[0].ranges_m, IsEmpty());
+  EXPECT_THAT(log.positions[1].sub_scans[0].intensities, IsEmpty());
+  EXPECT_THAT(log.positions[2].sub_scans[0].ranges_m, IsEmpty());
+  EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("2 scans have angles that cannot be")));
+}
+
 TEST_F(NistScan, FaultsAreNamedWithTheirLine) {
   const std::string start = "sensor l beams 3 first_angle -50 angle_step 25\nposition 0\nscan l heading 0 ";
   EXPECT_THAT(error("sensor l beams 3\nposition 0\nscan l heading 0 ranges 1 2 3\n"),
