@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <utility>
 #include <vector>
 
 namespace shapemap {
