@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <utility>
-#include <utility>
 #include <vector>
 
 namespace shapemap {
