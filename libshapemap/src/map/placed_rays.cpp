@@ -28,11 +28,11 @@ void for_each_sub_scan(const Log& log, const PlacedPosition& place, const Visit&
 std::vector<Rays> rays_of(const Log& log, const PlacedPosition& place, const ReturnOptions& options) {
   std::vector<Rays> all;
   for_each_sub_scan(log, place, [&](const SubScan& sub_scan, const Pose2& map_from_sub_scan) {
+    const std::vector<Return> returns = returns_in_robot(sub_scan, options);
+    if (returns.empty()) return;
     Rays rays;
-    for (const Return& hit : returns_in_robot(sub_scan, options)) {
-      rays.hits_m.push_back(map_from_sub_scan * hit.p_in_robot_m);
-    }
-    if (rays.hits_m.empty()) return;
+    rays.hits_m.reserve(returns.size());
+    for (const Return& hit : returns) rays.hits_m.push_back(map_from_sub_scan * hit.p_in_robot_m);
     rays.from_m = map_from_sub_scan * robot_from_sensor2(sub_scan).translation();
     rays.beam_step_rad = mean_beam_step_rad(sub_scan);
     all.push_back(std::move(rays));

@@ -5,7 +5,8 @@
 
 namespace shapemap {
 
-/// Bresenham's line: calls `visit(cell)` for each cell from `from` on, up to the one before `to`, while it returns true.
+/// Bresenham's line: calls `visit(cell)` for each cell from `from` on, up to the one before `to`, as long as that
+/// returns true.
 template <class Visit>
 void while_cell_before(Eigen::Vector2i from, const Eigen::Vector2i& to, Visit&& visit) {
   const Eigen::Vector2i step(from.x() < to.x() ? 1 : -1, from.y() < to.y() ? 1 : -1);
