@@ -17,6 +17,7 @@ namespace {
 // See also rectangle_choice.cpp.
 constexpr double kCellsPerRange = 8.0;      // in a usual range: neighbouring beams, and the same wall seen twice, meet
 constexpr double kSideBySide = 4.0;         // beam spacings between neighbours on a surface that is seen at a slant
+constexpr double kInLine = 0.1;             // of the range, off the line through the two hits before or after
 constexpr std::int64_t kSurfaceWorth = 10;  // of a cell; one of lone hits is worth 1
 constexpr double kMostCells = 1e9;          // what is farther off is no map, and the size of the picture is refused
 
@@ -47,6 +48,27 @@ double usual_range_m(const std::vector<SeenRays>& seen) {
   return 1.0;
 }
 
+bool are_side_by_side(const Rays& rays, std::size_t i, std::size_t k) {
+  const double spacing_m2 = rays.beam_step_rad * rays.beam_step_rad * (rays.hits_m[k] - rays.from_m).squaredNorm();
+  return (rays.hits_m[k] - rays.hits_m[i]).squaredNorm() <= kSideBySide * kSideBySide * spacing_m2;
+}
+
+/// Whether the line through hits i and k meets the beam of hit `at` where that hit is.
+bool is_on_line(const Rays& rays, std::size_t i, std::size_t k, std::size_t at) {
+  const Point2 along = rays.hits_m[k] - rays.hits_m[i];
+  const Point2 to_line = rays.hits_m[i] - rays.from_m;
+  const Point2 beam = rays.hits_m[at] - rays.from_m;
+  const double line_share = along.x() * to_line.y() - along.y() * to_line.x();
+  const double beam_share = along.x() * beam.y() - along.y() * beam.x();
+  return std::abs(line_share - beam_share) <= kInLine * std::abs(line_share);
+}
+
+/// Along a wall that is seen at a low angle, neighbouring beams end far apart, but on one line.
+bool is_in_line(const Rays& rays, std::size_t at) {
+  return (at >= 2 && is_on_line(rays, at - 2, at - 1, at)) ||
+         (at + 2 < rays.hits_m.size() && is_on_line(rays, at + 1, at + 2, at));
+}
+
 /// Which cells have hits, and what these are worth.
 class CellWorths {
  public:
@@ -59,17 +81,14 @@ class CellWorths {
 
   void add(const SeenRays& seen) {
     const std::vector<Point2>& hits_m = seen.rays.hits_m;
-    const double per_range = kSideBySide * seen.rays.beam_step_rad;
     Cell* previous = nullptr;
     for (std::size_t i = 0; i < hits_m.size(); ++i) {
       Cell& cell = at(cell_of(hits_m[i]));
       if (!seen.contradicts_map) {
         cell.is_surface = cell.is_surface || (cell.look != 0 && cell.look != seen.look);
         cell.look = seen.look;
-        if (i > 0) {
-          const double tolerance_m2 = per_range * per_range * (hits_m[i] - seen.rays.from_m).squaredNorm();
-          if ((hits_m[i] - hits_m[i - 1]).squaredNorm() <= tolerance_m2) previous->is_surface = cell.is_surface = true;
-        }
+        if (i > 0 && are_side_by_side(seen.rays, i - 1, i)) previous->is_surface = cell.is_surface = true;
+        if (!cell.is_surface && is_in_line(seen.rays, i)) cell.is_surface = true;
       }
       previous = &cell;
     }

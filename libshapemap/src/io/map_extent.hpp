@@ -36,13 +36,12 @@ Box box_of_all(const std::vector<SeenRays>& seen, const std::vector<PlacedPositi
 /// Holds all positions and sensors, and the hits that are certain enough for the room that they take:
 ///
 /// - The plane is divided into cells of about a tenth of the usual range, so that no length is fixed. A cell is a
-/// surface when neighbouring beams
-///   of one sub-scan end side by side in it, or when hits of two looks lie in it or beside it; else it holds lone hits,
-///   which count a tenth.
-/// - The core of the map is the rectangle for which the share of what is known that it holds, less 0.02 times the
-///   logarithm of its area, is largest: a picture that is ten times larger must show 5 % more of what is known.
-/// - The picture may be twice as large as the core, to hold as much as possible of the rest. Where all fits, all is
-///   held, so that nothing is cut off for a small gain.
+///   surface when neighbouring beams of one sub-scan end side by side in it, or in line with two more, or when hits of
+///   two looks lie in it or beside it; else it holds lone hits, which count a tenth.
+/// - The core of the map is the rectangle for which the share of what is known that it holds, less 0.03 times the
+///   logarithm of its area, is largest: a picture that is ten times larger must show 7 % more of what is known.
+/// - Where the whole is no more than four times as large as the core, all is held, so that nothing is cut off for a
+///   small gain. Else the picture is up to twice as large as the core, to hold as much as possible of the rest.
 ///
 /// A single position cannot be checked by others, and all that it saw is held.
 Box certain_box(const std::vector<SeenRays>& seen, const std::vector<PlacedPosition>& placed);

@@ -9,8 +9,9 @@
 namespace shapemap {
 namespace {
 
-constexpr double kSharePerGrowth = 0.02;  // of what is known, for a picture that is e times larger
-constexpr double kSlack = 2.0;            // the picture may be so many times larger than its core
+constexpr double kSharePerGrowth = 0.03;  // of what is known, for a picture that is e times larger
+constexpr double kWhole = 4.0;            // all is held where that makes the picture no larger than so many cores
+constexpr double kSlack = 2.0;            // else as much as a picture of so many cores holds
 constexpr double kLineGrowth = 1.25;      // of the distances from the positions at which the picture may end
 
 /// In whole cells, so that near lines are one cell apart.
@@ -75,8 +76,8 @@ class RectangleChoice {
       most = merit;
       core = lines;
     });
+    if (area(whole()) <= kWhole * area(core)) return std::nullopt;
     const double room = kSlack * area(core);
-    if (area(whole()) <= room) return std::nullopt;
     Rectangle chosen = core;
     for_each_rectangle(core, [&](const Rectangle& lines) {
       if (area(lines) > room) return;

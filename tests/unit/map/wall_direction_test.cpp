@@ -105,7 +105,7 @@ TEST(WallDirection, TurnsAllFragmentsAndNoMotion) {
   const PlacedLog round = walk_in(polygon(60, 6.0));
   std::vector<Fragment> fragments(3);
   Log log;
-  for (const PlacedLog* part : {&walk, &other, &round}) {
+  for (const PlacedLog* part : std::vector<const PlacedLog*>{&walk, &other, &round}) {
     for (PlacedPosition place : part->placed) {
       place.position_index += log.positions.size() - place.position_index;
       fragments[static_cast<std::size_t>(part == &other) + 2 * static_cast<std::size_t>(part == &round)]
