@@ -123,4 +123,4 @@ def test_options_come_from_a_file_too(run, tmp_path, mapped):
     (tmp_path / "in.log").write_text(spoilt_log())
     refused = run("in.log", "--out", "other.png", "--clear-no-return-m", "-1")
     assert refused.returncode == 2
-    assert "--clear-no-return-m is -1, expected 0 to 1000" in refused.stderr
+    assert "--clear-no-return-m is '-1', expected a number from 0 to 1000" in refused.stderr

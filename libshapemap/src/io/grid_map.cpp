@@ -230,15 +230,17 @@ GridMap picture_of(const MrptGrid& grid, const Extent& of_grid, const Extent& ex
   return map;
 }
 
-void count_returns(const std::vector<SeenRays>& seen, GridMap& map) {
+void count_returns(const std::vector<SeenRays>& seen, const Box& all, GridMap& map) {
+  const auto is_inside = [&](const Point2& p_m) {
+    const Eigen::Vector2i pixel = map.pixel_at(p_m);
+    return 0 <= pixel.x() && pixel.x() < map.width_cells && 0 <= pixel.y() && pixel.y() < map.height_cells;
+  };
+  const bool is_whole = is_inside(all.lower_m) && is_inside(all.upper_m);
   for (const SeenRays& one : seen) {
-    map.num_returns += one.rays.hits_m.size();
-    for (const Point2& hit_m : one.rays.hits_m) {
-      const Eigen::Vector2i pixel = map.pixel_at(hit_m);
-      const bool is_inside =
-          0 <= pixel.x() && pixel.x() < map.width_cells && 0 <= pixel.y() && pixel.y() < map.height_cells;
-      if (!is_inside) ++map.num_outside;
-    }
+    const std::vector<Point2>& hits_m = one.rays.hits_m;
+    map.num_returns += hits_m.size();
+    if (is_whole) continue;
+    map.num_outside += hits_m.size() - static_cast<std::size_t>(std::count_if(hits_m.begin(), hits_m.end(), is_inside));
   }
 }
 
@@ -255,7 +257,8 @@ GridMap build_grid_map(const Log& log, const std::vector<PlacedPosition>& placed
   if (placed.empty()) throw OutputError("no position has a pose, so there is no map to draw");
   const double resolution_m = options.resolution_m;
   const std::vector<SeenRays> seen = seen_rays(log, placed, returns);
-  Box shown = options.draw_all ? box_of_all(seen, placed) : certain_box(seen, placed);
+  const Box all = box_of_all(seen, placed);
+  Box shown = options.draw_all ? all : certain_box(seen, placed, all);
   Box reached = shown;
   for_each_open_ray(log, placed, returns, options, [&](const Point2& from_m, const Point2& end_m) {
     shown.include(from_m);
@@ -275,7 +278,7 @@ GridMap build_grid_map(const Log& log, const std::vector<PlacedPosition>& placed
     });
   }
   GridMap map = picture_of(canvas.grid(), extent, Extent(shown, resolution_m), resolution_m);
-  count_returns(seen, map);
+  count_returns(seen, all, map);
   return map;
 }
 

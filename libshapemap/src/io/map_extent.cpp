@@ -31,11 +31,12 @@ Box box_of_sensors(const std::vector<SeenRays>& seen, const std::vector<PlacedPo
 /// The power of two at or below the median range, 1 without any hit.
 double usual_range_m(const std::vector<SeenRays>& seen) {
   constexpr int kSmallest = -20;
+  constexpr std::size_t kSampled = 8;  // every eighth hit will do
   std::array<std::size_t, 64> counts{};
   std::size_t total = 0;
   for (const SeenRays& one : seen) {
-    for (const Point2& hit_m : one.rays.hits_m) {
-      const int exponent = std::ilogb((hit_m - one.rays.from_m).squaredNorm()) >> 1;
+    for (std::size_t i = 0; i < one.rays.hits_m.size(); i += kSampled) {
+      const int exponent = std::ilogb((one.rays.hits_m[i] - one.rays.from_m).squaredNorm()) >> 1;
       ++counts[static_cast<std::size_t>(std::clamp(exponent - kSmallest, 0, 63))];
       ++total;
     }
@@ -72,11 +73,12 @@ bool is_in_line(const Rays& rays, std::size_t at) {
 /// Which cells have hits, and what these are worth.
 class CellWorths {
  public:
-  explicit CellWorths(double cell_m) : cell_m_(cell_m) {}
+  /// `cell_m` is a power of two, so that its inverse is exact.
+  explicit CellWorths(double cell_m) : cells_per_m_(1.0 / cell_m) {}
 
   CellIndex cell_of(const Point2& p_m) const {
-    return {static_cast<std::int64_t>(std::floor(p_m.x() / cell_m_)),
-            static_cast<std::int64_t>(std::floor(p_m.y() / cell_m_))};
+    return {static_cast<std::int64_t>(std::floor(p_m.x() * cells_per_m_)),
+            static_cast<std::int64_t>(std::floor(p_m.y() * cells_per_m_))};
   }
 
   void add(const SeenRays& seen) {
@@ -87,7 +89,8 @@ class CellWorths {
       if (!seen.contradicts_map) {
         cell.is_surface = cell.is_surface || (cell.look != 0 && cell.look != seen.look);
         cell.look = seen.look;
-        if (i > 0 && are_side_by_side(seen.rays, i - 1, i)) previous->is_surface = cell.is_surface = true;
+        const bool is_news = i > 0 && !(previous->is_surface && cell.is_surface);
+        if (is_news && are_side_by_side(seen.rays, i - 1, i)) previous->is_surface = cell.is_surface = true;
         if (!cell.is_surface && is_in_line(seen.rays, i)) cell.is_surface = true;
       }
       previous = &cell;
@@ -133,7 +136,7 @@ class CellWorths {
     return false;
   }
 
-  double cell_m_;
+  double cells_per_m_;
   std::unordered_map<std::int64_t, Cell> cells_;
   std::pair<const std::int64_t, Cell>* last_ = nullptr;
 };
@@ -148,8 +151,7 @@ Box box_of_all(const std::vector<SeenRays>& seen, const std::vector<PlacedPositi
   return box;
 }
 
-Box certain_box(const std::vector<SeenRays>& seen, const std::vector<PlacedPosition>& placed) {
-  const Box all = box_of_all(seen, placed);
+Box certain_box(const std::vector<SeenRays>& seen, const std::vector<PlacedPosition>& placed, const Box& all) {
   const double cell_m = usual_range_m(seen) / kCellsPerRange;
   const double farthest_m = std::max(all.lower_m.cwiseAbs().maxCoeff(), all.upper_m.cwiseAbs().maxCoeff());
   if (placed.size() < 2 || seen.empty() || !(farthest_m / cell_m < kMostCells)) return all;

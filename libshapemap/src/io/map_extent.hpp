@@ -43,7 +43,7 @@ Box box_of_all(const std::vector<SeenRays>& seen, const std::vector<PlacedPositi
 /// - Where the whole is no more than four times as large as the core, all is held, so that nothing is cut off for a
 ///   small gain. Else the picture is up to twice as large as the core, to hold as much as possible of the rest.
 ///
-/// A single position cannot be checked by others, and all that it saw is held.
-Box certain_box(const std::vector<SeenRays>& seen, const std::vector<PlacedPosition>& placed);
+/// A single position cannot be checked by others, and all that it saw is held. `all` is box_of_all().
+Box certain_box(const std::vector<SeenRays>& seen, const std::vector<PlacedPosition>& placed, const Box& all);
 
 }  // namespace shapemap
