@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <tuple>
+#include <numeric>
 #include <utility>
 
 #include "shapemap/map/looks.hpp"
@@ -25,6 +25,7 @@ constexpr int kBins = 360;                   // of a quarter of a degree
 
 struct Stretch {
   double angle_rad = 0.0;  ///< modulo 90 degrees
+  double length_m = 0.0;
   double weight = 0.0;
 };
 
@@ -82,12 +83,11 @@ struct LineFit {
   }
 };
 
-/// Splits points [first, last) where they are farthest off their chord until all stretches are straight.
-void add_stretches(const Run& run, std::size_t first, std::size_t last, double tolerance_m,
-                   std::vector<Stretch>& stretches) {
-  std::vector<std::pair<std::size_t, std::size_t>> left_to_do{{first, last}};
+/// Splits a run where its points are farthest off their chord until all stretches are straight.
+void add_stretches(const Run& run, double tolerance_m, std::vector<Stretch>& stretches) {
+  std::vector<std::pair<std::size_t, std::size_t>> left_to_do{{0, run.size()}};
   while (!left_to_do.empty()) {
-    std::tie(first, last) = left_to_do.back();
+    const auto [first, last] = left_to_do.back();
     left_to_do.pop_back();
     if (last - first < kLeastPoints) continue;
     const Point2 chord = run[last - 1] - run[first];
@@ -109,14 +109,45 @@ void add_stretches(const Run& run, std::size_t first, std::size_t last, double t
       continue;
     }
     const Point2 direction = LineFit(run, first, last).direction;
-    stretches.push_back({quarter_turn_wrapped(std::atan2(direction.y(), direction.x())), length_m * length_m});
+    stretches.push_back({quarter_turn_wrapped(std::atan2(direction.y(), direction.x())), length_m, 0.0});
   }
 }
 
-std::vector<Stretch> stretches_of(const std::vector<Run>& runs, double tolerance_m) {
-  std::vector<Stretch> stretches;
-  for (const Run& run : runs) add_stretches(run, 0, run.size(), tolerance_m, stretches);
-  return stretches;
+/// Half of the sum is in values that are not larger.
+double middle_of_sum(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const double total = std::accumulate(values.begin(), values.end(), 0.0);
+  double sum = 0.0;
+  for (const double value : values) {
+    sum += value;
+    if (2.0 * sum >= total) return value;
+  }
+  return 0.0;
+}
+
+/// As the header says; `looks` holds the stretches of each look.
+std::vector<Stretch> weighed(std::vector<std::vector<Stretch>> looks) {
+  std::vector<double> lengths_m;
+  for (const std::vector<Stretch>& look : looks) {
+    for (const Stretch& stretch : look) lengths_m.push_back(stretch.length_m);
+  }
+  const double usual_m = middle_of_sum(std::move(lengths_m));
+  std::vector<double> totals(looks.size(), 0.0);
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    for (Stretch& stretch : looks[i]) {
+      stretch.weight = stretch.length_m * stretch.length_m / (stretch.length_m + usual_m);
+      totals[i] += stretch.weight;
+    }
+  }
+  const double usual_total = middle_of_sum(totals);
+  std::vector<Stretch> all;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    for (Stretch& stretch : looks[i]) {
+      stretch.weight /= totals[i] + usual_total;
+      all.push_back(stretch);
+    }
+  }
+  return all;
 }
 
 /// What is within kNear_rad of an angle.
@@ -164,19 +195,24 @@ WallDirection direction_of(const std::vector<Stretch>& stretches) {
 }  // namespace
 
 WallDirection wall_direction(const Log& log, const std::vector<PlacedPosition>& placed, const ReturnOptions& returns) {
-  std::vector<Run> runs;
   const std::vector<std::size_t> starts = starts_of_looks(placed);
-  for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
+  std::vector<std::vector<Run>> runs(starts.size() - 1);
+  std::vector<double> deviations_m;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
     for (const Rays& rays : rays_of(log, placed[starts[i]], returns)) {
       for (Run& run : runs_of(rays)) {
-        if (run.size() >= kLeastPoints) runs.push_back(std::move(run));
+        if (run.size() < kLeastPoints) continue;
+        add_deviations(run, deviations_m);
+        runs[i].push_back(std::move(run));
       }
     }
   }
-  std::vector<double> deviations_m;
-  for (const Run& run : runs) add_deviations(run, deviations_m);
   const double tolerance_m = std::max(kLeastTolerance_m, kMostNoises * noise_m(std::move(deviations_m)));
-  return direction_of(stretches_of(runs, tolerance_m));
+  std::vector<std::vector<Stretch>> looks(runs.size());
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    for (const Run& run : runs[i]) add_stretches(run, tolerance_m, looks[i]);
+  }
+  return direction_of(weighed(std::move(looks)));
 }
 
 std::vector<WallDirection> align_walls(const Log& log, const ReturnOptions& returns, std::vector<Fragment>& fragments) {

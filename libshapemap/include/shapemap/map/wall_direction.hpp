@@ -29,14 +29,16 @@ struct WallDirection {
 
   /// Whether this is the direction of the building. A round room, or a cave, has 0.11 of its walls in any 10 of 90
   /// degrees; an octagon has two directions that are as good, a triangle three.
-  bool is_dominant() const { return share >= 0.4 && share >= 1.5 * rival_share; }
+  bool is_dominant() const { return share >= 0.3 && share >= 1.5 * rival_share; }
   /// By so much the map is turned.
   double turn_rad() const { return is_dominant() ? -angle_rad : 0.0; }
 };
 
-/// Straight stretches are fitted to the hits of one scan of each look, and each weighs the square of its length, so
-/// that a long wall counts more than the clutter before it. The direction is the mode of these modulo 90 degrees, and
-/// the mean of what is within 5 degrees of it.
+/// Straight stretches are fitted to the hits of one scan of each look. One of length l weighs l^2 / (l + m), where half
+/// of all wall is in stretches shorter than m: clutter counts less than its length, so that a long wall outweighs what
+/// stands before it. What a look weighs in total is limited likewise, so that a hall that was seen once through a door
+/// does not outweigh the rooms. The direction is the mode of these modulo 90 degrees, and the mean of what is within 5
+/// degrees of it.
 WallDirection wall_direction(const Log& log, const std::vector<PlacedPosition>& placed, const ReturnOptions& returns);
 
 /// Turns each fragment about its origin by the least turn that makes its walls straight. Motions between its positions
