@@ -3,6 +3,7 @@
 
 #include "log_formats.hpp"
 #include "shapemap/core/errors.hpp"
+#include "shapemap/scan/no_return.hpp"
 
 namespace shapemap {
 namespace {
@@ -48,8 +49,9 @@ void finish_log(const ByteSource& source, Log& log) {
   }
 }
 
-Log read_log(const std::string& path, LogFormat format, const LogReadOptions& options) {
-  validate(options);
+namespace {
+
+Log read_as_it_is(const std::string& path, LogFormat format, const LogReadOptions& options) {
   ByteSource source(path);
   switch (format == LogFormat::kAuto ? recognise_log_format(source) : format) {
     case LogFormat::kRawlog:
@@ -62,6 +64,18 @@ Log read_log(const std::string& path, LogFormat format, const LogReadOptions& op
       break;
   }
   throw InputError(path + ": unknown log format");
+}
+
+}  // namespace
+
+Log read_log(const std::string& path, LogFormat format, const LogReadOptions& options) {
+  validate(options);
+  const NoReturnChoice no_returns = no_return_choice(options.no_return_m);
+  Log log = read_as_it_is(path, format, options);
+  const std::size_t num_of_reader = log.warnings.size();
+  sort_out_no_returns(log, no_returns);
+  for (std::size_t i = num_of_reader; i < log.warnings.size(); ++i) log.warnings[i] = path + ": " + log.warnings[i];
+  return log;
 }
 
 std::string what_is_lost(const Log& log, LogFormat format) {
