@@ -11,8 +11,9 @@ namespace shapemap {
 
 /// Adds up the weights of fragments inside of a window of distances and on both sides of it, each view once.
 ///
-/// Two fragments are the same view if the rest of the sweep around them is the same: the same beams of a robot that
-/// stands, or other beams of one that turned. So hours in front of one pillar count as one pillar.
+/// Two fragments are the same view if the rest of the sweep around them is the same: on the same beams of a robot that
+/// stands, or on other beams of one that turned. So hours in front of one pillar count as one pillar. What comes and
+/// goes on different beams while the robot stands are different views.
 class DistinctViews {
  public:
   DistinctViews(const RangeSample& sample, const LevelWindow& window, Millimetres side_mm);
@@ -30,6 +31,7 @@ class DistinctViews {
   struct View {
     std::size_t sweep = 0;
     double middle = 0.0;
+    double num_beams = 0.0;
   };
   struct Zone {
     double weight = 0.0;
@@ -43,7 +45,15 @@ class DistinctViews {
 
   Shares shares_of(const Fragment& fragment) const;
   bool is_new(const Zone& zone, const View& view) const;
+  struct Likeness {
+    std::size_t compared = 0;
+    std::size_t same = 0;
+    double difference = 0.0;  ///< mean, as a share of the tolerance, at most 1
+    bool is_alike() const;
+  };
   bool is_same(const View& a, const View& b) const;
+  /// Of two sweeps, where beam `middle_a` of the one is laid on `middle_b` of the other.
+  Likeness likeness(const View& a, double middle_a, const View& b, double middle_b) const;
   bool is_inside(Millimetres range_mm) const { return range_mm >= window_.from_mm && range_mm < window_.end_mm; }
 
   const RangeSample& sample_;

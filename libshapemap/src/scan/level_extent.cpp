@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kFewestOfLevel =
     0.002;                            // a distance with less than this share of the level is an odd reading beside it
+constexpr double kTimesAround = 2.5;  // by which surfaces may be denser than around
 constexpr double kSigmas = 5.0;       // by which a distance has more readings than those around
 constexpr double kMostOfLevel = 0.9;  // so much of a level is made of single distances, or it is spread evenly
 
@@ -38,6 +39,14 @@ class Readings {
     for (Millimetres range_mm = from_mm; range_mm < end_mm; ++range_mm) sum += count(range_mm);
     return sum;
   }
+  /// The most frequent distance of the window.
+  Millimetres fullest() const {
+    Millimetres fullest_mm = window_.from_mm;
+    for (Millimetres range_mm = window_.from_mm; range_mm < window_.end_mm; ++range_mm) {
+      if (count(range_mm) > count(fullest_mm)) fullest_mm = range_mm;
+    }
+    return fullest_mm;
+  }
   /// Of the denser side.
   double mean_count_beside() const {
     const double below = count(first_mm_, window_.from_mm);
@@ -60,7 +69,7 @@ LevelExtent extent_of(const std::vector<SubScan*>& scans, const LevelWindow& win
   const Readings readings(scans, window, 2 * gap_mm);
   const double in_window = readings.count(window.from_mm, window.end_mm);
   const double around = readings.mean_count_beside() * resolution_mm;  // all of them may lie on one distance
-  const double fewest = std::max(around + kSigmas * std::sqrt(around) + 1.0, kFewestOfLevel * in_window);
+  const double fewest = std::max(kTimesAround * around + kSigmas * std::sqrt(around) + 1.0, kFewestOfLevel * in_window);
 
   double of_single = 0.0;
   for (Millimetres range_mm = window.from_mm; range_mm < window.end_mm; ++range_mm) {
@@ -81,7 +90,7 @@ LevelExtent extent_of(const std::vector<SubScan*>& scans, const LevelWindow& win
     extent.from_mm = std::min(extent.from_mm, range_mm);
     extent.to_mm = range_mm;
   }
-  if (extent.to_mm < extent.from_mm) return {window.from_mm, window.end_mm - 1};
+  if (extent.to_mm < extent.from_mm) extent.from_mm = extent.to_mm = readings.fullest();
   for (Millimetres range_mm = extent.to_mm + 1; range_mm <= extent.to_mm + resolution_mm; ++range_mm) {
     if (range_mm < readings.end_mm() && stands_out(range_mm)) extent.to_mm = range_mm;
   }

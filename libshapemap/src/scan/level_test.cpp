@@ -13,6 +13,7 @@ constexpr double kErrorPerSensor = 1e-6;
 constexpr Millimetres kSideWindows = 8;  // flank on each side, in widths; see the class for the bound that follows
 constexpr double kLargestShare = 1.0 / 3.0;
 constexpr Millimetres kNarrowest_mm = 2;
+constexpr double kWidestShare = 0.02;        // of the distance: wider, people who walk by would keep inside
 constexpr Millimetres kWidest_mm = 512;      // spread levels are up to 0.2 m wide, and need not lie well in a window
 constexpr double kEvenShare = 0.2;           // of the weight of a side: 1/8 where readings are spread evenly
 constexpr double kQuantile = 0.25;           // levels may hold most of the weight, but not three quarters
@@ -90,7 +91,8 @@ std::vector<LevelWindow> LevelTest::candidates() {
     num_windows_ += occupied_mm_.size();
     for (const Millimetres from_mm : occupied_mm_) {
       // A wall is seen square-on by a few beams only: the side has its share of them from this width on.
-      if (static_cast<double>(width_mm) < 0.25 * step_rad * step_rad * static_cast<double>(from_mm)) break;
+      if (width_mm < 0.25 * step_rad * step_rad * from_mm) break;
+      if (width_mm > resolution_mm_ && width_mm > kWidestShare * from_mm) continue;
       const Millimetres end_mm = from_mm + width_mm;
       const double beside = std::max(weight(from_mm - kSideWindows * width_mm, from_mm),
                                      weight(end_mm, end_mm + kSideWindows * width_mm));
