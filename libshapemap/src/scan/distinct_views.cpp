@@ -71,7 +71,7 @@ bool DistinctViews::Likeness::is_alike() const {
 bool DistinctViews::is_same(const View& a, const View& b) const {
   const double step_rad = sample_.sweeps()[b.sweep].step_rad;
   const double middle_of_b = b.middle * step_rad / sample_.sweeps()[a.sweep].step_rad;  // in beams of a
-  if (std::abs(a.middle - middle_of_b) <= std::max(a.num_beams, b.num_beams)) {
+  if (std::abs(a.middle - middle_of_b) < 0.5 * (a.num_beams + b.num_beams)) {
     if (likeness(a, middle_of_b, b, b.middle).is_alike()) return true;
   }
   const Likeness turned = likeness(a, a.middle, b, b.middle);

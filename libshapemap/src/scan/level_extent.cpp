@@ -8,11 +8,10 @@
 namespace shapemap {
 namespace {
 
-constexpr double kFewestOfLevel =
-    0.002;                            // a distance with less than this share of the level is an odd reading beside it
-constexpr double kTimesAround = 2.5;  // by which surfaces may be denser than around
-constexpr double kSigmas = 5.0;       // by which a distance has more readings than those around
-constexpr double kMostOfLevel = 0.9;  // so much of a level is made of single distances, or it is spread evenly
+constexpr double kFewestOfLevel = 0.002;  // rarer distances are odd readings beside a level
+constexpr double kTimesAround = 2.5;      // by which surfaces may be denser than around
+constexpr double kSigmas = 5.0;           // by which a distance has more readings than those around
+constexpr double kMostOfLevel = 0.9;      // so much of a level is made of single distances, or it is spread evenly
 
 /// How often each distance around a window was read.
 class Readings {

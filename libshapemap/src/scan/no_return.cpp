@@ -7,13 +7,14 @@
 #include <cstdio>
 #include <limits>
 #include <map>
-#include <set>
+#include <optional>
 #include <utility>
 
 #include "level_extent.hpp"
 #include "level_test.hpp"
 #include "range_order.hpp"
 #include "range_sample.hpp"
+#include "shapemap/scan/returns.hpp"
 
 namespace shapemap {
 namespace {
@@ -134,7 +135,7 @@ void believe_sick_codes(Sensor& sensor) {
     const Millimetres width_mm = codes.to_mm - codes.from_mm;
     std::size_t on_level = 0;
     std::size_t below = 0;
-    double from_m = longest_mm;
+    double from_m = kLongestRange_m;
     for (const SubScan* scan : sensor.scans) {
       for (const float range_m : scan->ranges_m) {
         const Millimetres range_mm = to_mm(range_m, *scan);
