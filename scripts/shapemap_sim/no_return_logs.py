@@ -4,38 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
-from .planar_raycast import PlanarCaster
-from .poses import Array
+from .no_return_lasers import Laser, SensorLog, drive, in_world, random_laser, still, with_codes
 from .streams import stream
 from .world import Arc, Face, World, polygon_faces, rectangle_corners
-
-LASER_HEIGHT_M = 0.3
-CROWDED_SHARE = 0.25  # of the beams, at most
-
-
-@dataclass(frozen=True)
-class Laser:
-    num_beams: int
-    fov_deg: float
-    sigma_m: float
-    step_m: float  # of its readings
-    limit_m: float
-
-
-@dataclass
-class SensorLog:
-    """`ranges` are lists `[beams]` of readings, NaN: the sensor itself says that nothing was hit."""
-
-    label: str
-    laser: Laser
-    ranges: Array
-    codes: list[tuple[float, float]] = field(default_factory=list)
-    on_code: list[Array] = field(default_factory=list)  # of each code: which readings
-    header_m: float = 0.0
 
 
 @dataclass
@@ -43,105 +18,6 @@ class NoReturnLog:
     kind: str
     seed: int
     sensors: list[SensorLog]
-
-
-def random_laser(rng: np.random.Generator, limit_m: float | None = None) -> Laser:
-    """60 to 1440 beams over 90 to 360 degrees, noise of 1 mm to 5 cm, readings in steps of 1 mm to 5 cm."""
-    num_beams = int(np.exp(rng.uniform(np.log(60), np.log(1440))))
-    fov_deg = float(rng.choice([90.0, 120.0, 180.0, 240.0, 270.0, 359.0]))
-    sigma_m = float(np.exp(rng.uniform(np.log(0.001), np.log(0.05))))
-    step_m = float(rng.choice([0.001, 0.004, 0.01, 0.05]))
-    return Laser(num_beams, fov_deg, sigma_m, step_m, limit_m or float(rng.uniform(8.0, 40.0)))
-
-
-def random_building(rng: np.random.Generator, size_m: float) -> World:
-    """Walls with gaps, boxes and pillars; open on some sides."""
-    world = World((size_m, size_m))
-    for side in range(4):
-        for part in range(4):
-            if rng.random() < 0.75:
-                low, high = part * size_m / 4, (part + 1) * size_m / 4
-                at = 0.0 if side < 2 else size_m
-                ends = ((low, at), (high, at)) if side % 2 else ((at, low), (at, high))
-                world.faces.append(Face(*ends))
-    for _ in range(int(rng.integers(3, 9))):
-        x, y = rng.uniform(0.1, 0.9, 2) * size_m
-        long = rng.uniform(0.1, 0.4) * size_m
-        end = (x + long, y) if rng.random() < 0.5 else (x, y + long)
-        world.faces.append(Face((x, y), end))
-    for _ in range(int(rng.integers(5, 25))):
-        corners = rectangle_corners(rng.uniform(0, size_m, 2), *rng.uniform(0.2, 1.5, 2), rng.uniform(0, np.pi))
-        world.faces.extend(polygon_faces(corners, 1.2, "box"))
-    for _ in range(int(rng.integers(0, 15))):
-        world.arcs.append(Arc(tuple(rng.uniform(0, size_m, 2)), float(rng.uniform(0.05, 0.4))))
-    return world
-
-
-def smooth_walk(rng: np.random.Generator, num: int, size_m: float, step_m: float) -> Array:
-    """Poses `[n, 3]` of a robot that drives round and about in the middle of a square."""
-    phase = np.cumsum(np.full(num, step_m)) / (0.25 * size_m)
-    shape = rng.uniform(0.6, 1.6, 2)
-    start = rng.uniform(0, 2 * np.pi, 2)
-    x = size_m * (0.5 + 0.3 * np.sin(shape[0] * phase + start[0]))
-    y = size_m * (0.5 + 0.3 * np.sin(shape[1] * phase + start[1]))
-    heading = np.arctan2(np.gradient(y), np.gradient(x)) if num > 1 else np.zeros(1)
-    return np.stack([x, y, heading], axis=1)
-
-
-def exact(world: World, poses: Array, laser: Laser) -> Array:
-    first = -0.5 * np.deg2rad(laser.fov_deg)
-    step = np.deg2rad(laser.fov_deg) / (laser.num_beams - 1)
-    return PlanarCaster(world, LASER_HEIGHT_M).cast(poses, first, step, laser.num_beams)
-
-
-def measured(rng: np.random.Generator, ranges: Array, laser: Laser) -> Array:
-    """With noise, in steps; NaN beyond the limit."""
-    noisy = np.maximum(ranges + laser.sigma_m * rng.standard_normal(ranges.shape), 2 * laser.step_m)
-    noisy = np.where(noisy < laser.limit_m, noisy, np.nan)
-    return np.round(np.round(noisy / laser.step_m) * laser.step_m, 4)
-
-
-def with_codes(
-    rng: np.random.Generator, log: SensorLog, values: Array, share: float = 0.0, every_lost: bool = True
-) -> None:
-    """Readings beyond the limit, and a share of the others, become one of the `values`."""
-    lost = np.isnan(log.ranges) if every_lost else np.zeros(log.ranges.shape, bool)
-    lost |= rng.random(log.ranges.shape) < share
-    log.ranges = np.where(lost, rng.choice(values, log.ranges.shape), log.ranges)
-    log.codes.append((float(values.min()), float(values.max())))
-    log.on_code.append(lost)
-
-
-def drive(rng: np.random.Generator, limit_m: float | None = None, num: int | None = None) -> SensorLog:
-    """A robot in a building of random size, hardly ever far smaller than what the laser sees."""
-    laser = random_laser(rng, limit_m)
-    size_m = laser.limit_m * float(rng.uniform(0.6, 2.5))
-    num = num or int(np.exp(rng.uniform(np.log(40), np.log(400))))
-    poses = smooth_walk(rng, num, size_m, float(rng.uniform(0.02, 0.08)) * size_m)
-    return SensorLog("laser", laser, measured(rng, exact(random_building(rng, size_m), poses, laser), laser))
-
-
-def still(rng: np.random.Generator, turning: bool, num: int, size_share: float = 1.0) -> SensorLog:
-    """In one place, with people walking by."""
-    laser = random_laser(rng)
-    size_m = size_share * laser.limit_m
-    poses = np.repeat(smooth_walk(rng, 1, size_m, 1.0), num, axis=0)
-    if turning:
-        poses[:, 2] += np.cumsum(rng.uniform(0.0, np.deg2rad(5.0), num))
-    seen = exact(random_building(rng, size_m), poses, laser)
-    for _ in range(3):
-        width = int(rng.uniform(0.0, CROWDED_SHARE / 3) * laser.num_beams)
-        at = np.abs(np.cumsum(rng.normal(0.0, 2.0, num)) + rng.integers(laser.num_beams)).astype(int)
-        away = 1.0 + np.abs(np.cumsum(rng.normal(0.0, 0.05, num)))
-        for i in range(num):
-            beams = np.arange(at[i], at[i] + width) % laser.num_beams
-            seen[i, beams] = np.minimum(seen[i, beams], away[i])
-    return SensorLog("laser", laser, measured(rng, seen, laser))
-
-
-def in_world(rng: np.random.Generator, world: World, poses: Array, laser: Laser | None = None) -> SensorLog:
-    laser = laser or random_laser(rng)
-    return SensorLog("laser", laser, measured(rng, exact(world, poses, laser), laser))
 
 
 # Logs with codes.
@@ -160,7 +36,8 @@ def limit_code(rng: np.random.Generator) -> list[SensorLog]:
 def inner_code(rng: np.random.Generator) -> list[SensorLog]:
     """Lost readings get a distance in the midst of the others."""
     log = drive(rng)
-    with_codes(rng, log, np.array([rng.uniform(0.2, 0.9) * log.laser.limit_m]), share=float(10 ** rng.uniform(-2, -0.5)))
+    code_m = rng.uniform(0.2, 0.9) * log.laser.limit_m
+    with_codes(rng, log, np.array([code_m]), share=float(10 ** rng.uniform(-2, -0.5)))
     return [log]
 
 
@@ -251,7 +128,9 @@ def along_wall(rng: np.random.Generator) -> list[SensorLog]:
     world = World((long_m, 20.0), faces=[Face((-20.0, 0.0), (long_m, 0.0))])
     for _ in range(num // 4):
         corners = rectangle_corners(
-            np.array([rng.uniform(-20, long_m), away_m + rng.uniform(2, 9)]), *rng.uniform(0.2, 1.0, 2), rng.uniform(0, 3)
+            np.array([rng.uniform(-20, long_m), away_m + rng.uniform(2, 9)]),
+            *rng.uniform(0.2, 1.0, 2),
+            rng.uniform(0, 3),
         )
         world.faces.extend(polygon_faces(corners, 1.2, "box"))
     if rng.random() < 0.5:
@@ -264,8 +143,8 @@ def along_wall(rng: np.random.Generator) -> list[SensorLog]:
 def corridor(rng: np.random.Generator) -> list[SensorLog]:
     num = int(rng.integers(50, 600))
     long_m, half_m = float(rng.uniform(30, 120)), float(rng.uniform(0.8, 2.0))
-    world = World((long_m, 2 * half_m), faces=polygon_faces(
-        np.array([[0, -half_m], [long_m, -half_m], [long_m, half_m], [0, half_m]]), 1.2, "wall"))
+    corners = np.array([[0, -half_m], [long_m, -half_m], [long_m, half_m], [0, half_m]])
+    world = World((long_m, 2 * half_m), faces=polygon_faces(corners, 1.2, "wall"))
     for x in np.arange(2.0, long_m, rng.uniform(2, 8)):
         world.faces.append(Face((x, half_m - 0.1), (x + 0.9, half_m - 0.1)))
     x = 2.0 + (long_m - 4.0) * (0.5 - 0.5 * np.cos(np.linspace(0, rng.uniform(1, 12), num)))
@@ -323,7 +202,8 @@ def far_facade(rng: np.random.Generator) -> list[SensorLog]:
     world = World((100, 50), faces=[Face((-100.0, away_m), (200.0, away_m))])
     for _ in range(60):
         corners = rectangle_corners(
-            np.array([rng.uniform(-20, 60), rng.uniform(-15, 14)]), *rng.uniform(0.2, 2.0, 2), rng.uniform(0, 3))
+            np.array([rng.uniform(-20, 60), rng.uniform(-15, 14)]), *rng.uniform(0.2, 2.0, 2), rng.uniform(0, 3)
+        )
         world.faces.extend(polygon_faces(corners, 1.2, "box"))
     laser = random_laser(rng, 40.0)
     x = np.linspace(0, rng.choice([0.0, 40.0]), num)
@@ -332,14 +212,29 @@ def far_facade(rng: np.random.Generator) -> list[SensorLog]:
 
 
 CODED: dict[str, Callable[[np.random.Generator], list[SensorLog]]] = {
-    "limit": limit_code, "inner": inner_code, "spread": spread_code, "millimetre": millimetre_code,
-    "odd-longer": odd_longer, "changing": changing_code, "two-sensors": two_sensors, "small-header": small_header,
-    "error-codes": error_codes, "still-with-code": still_with_code,
+    "limit": limit_code,
+    "inner": inner_code,
+    "spread": spread_code,
+    "millimetre": millimetre_code,
+    "odd-longer": odd_longer,
+    "changing": changing_code,
+    "two-sensors": two_sensors,
+    "small-header": small_header,
+    "error-codes": error_codes,
+    "still-with-code": still_with_code,
 }
 REAL: dict[str, Callable[[np.random.Generator], list[SensorLog]]] = {
-    "truncated": truncated, "standing": standing, "turning": turning, "along-wall": along_wall, "corridor": corridor,
-    "glass-hall": glass_hall, "round-room": round_room, "small-room": small_room, "pillars": pillars,
-    "coarse-steps": coarse_steps, "far-facade": far_facade,
+    "truncated": truncated,
+    "standing": standing,
+    "turning": turning,
+    "along-wall": along_wall,
+    "corridor": corridor,
+    "glass-hall": glass_hall,
+    "round-room": round_room,
+    "small-room": small_room,
+    "pillars": pillars,
+    "coarse-steps": coarse_steps,
+    "far-facade": far_facade,
 }
 KINDS = {**CODED, **REAL}
 
