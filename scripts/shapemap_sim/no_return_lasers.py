@@ -87,9 +87,9 @@ def exact(world: World, poses: Array, laser: Laser) -> Array:
 
 
 def measured(rng: np.random.Generator, ranges: Array, laser: Laser) -> Array:
-    """With noise, in steps; NaN beyond the limit."""
-    noisy = np.maximum(ranges + laser.sigma_m * rng.standard_normal(ranges.shape), 2 * laser.step_m)
-    noisy = np.where(noisy < laser.limit_m, noisy, np.nan)
+    """With noise, in steps; NaN beyond the limit and too near."""
+    noisy = ranges + laser.sigma_m * rng.standard_normal(ranges.shape)
+    noisy = np.where((noisy > 2 * laser.step_m) & (noisy < laser.limit_m), noisy, np.nan)
     return np.round(np.round(noisy / laser.step_m) * laser.step_m, 4)
 
 
