@@ -20,9 +20,8 @@ from pathlib import Path
 import numpy as np
 
 from evaluate_arena import parse_seeds
-from shapemap_sim.no_return_lasers import SensorLog
+from shapemap_sim.no_return_lasers import Mask, SensorLog
 from shapemap_sim.no_return_logs import CODED, KINDS, NoReturnLog, simulate_no_return_log
-from shapemap_sim.poses import Array
 from shapemap_sim.rates import wilson_interval
 from simulate_arena import number, some_of
 
@@ -95,7 +94,7 @@ def log_text(log: NoReturnLog) -> str:
     return "\n".join(lines) + "\n"
 
 
-def num_runs(on_code: Array) -> int:
+def num_runs(on_code: Mask) -> int:
     """Of neighbouring beams."""
     before = np.pad(on_code, ((0, 0), (1, 0)))[:, :-1]
     return int((on_code & ~before).sum())

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .planar_raycast import PlanarCaster
 from .poses import Array
@@ -13,6 +14,7 @@ from .streams import stream
 from .world import Arc, Face, World, polygon_faces, rectangle_corners
 
 LASER_HEIGHT_M = 0.3
+Mask = NDArray[np.bool_]
 CROWDED_SHARE = 0.25  # of the beams, at most
 
 
@@ -33,7 +35,7 @@ class SensorLog:
     laser: Laser
     ranges: Array
     codes: list[tuple[float, float]] = field(default_factory=list)
-    on_code: list[Array] = field(default_factory=list)  # of each code: which readings
+    on_code: list[Mask] = field(default_factory=list)  # of each code: which readings
     header_m: float = 0.0
 
 
@@ -44,6 +46,15 @@ def random_laser(rng: np.random.Generator, limit_m: float | None = None) -> Lase
     sigma_m = float(np.exp(rng.uniform(np.log(0.001), np.log(0.05))))
     step_m = float(rng.choice([0.001, 0.004, 0.01, 0.05]))
     return Laser(num_beams, fov_deg, sigma_m, step_m, limit_m or float(rng.uniform(8.0, 40.0)))
+
+
+def random_box(
+    rng: np.random.Generator, low: tuple[float, float], high: tuple[float, float], largest_m: float
+) -> list[Face]:
+    """One box, its middle within limits, with sides of 0.2 m up to `largest_m`."""
+    length_m, width_m = rng.uniform(0.2, largest_m, 2)
+    corners = rectangle_corners(rng.uniform(low, high), length_m, width_m, float(rng.uniform(0, np.pi)))
+    return polygon_faces(corners, 1.2, "box")
 
 
 def random_building(rng: np.random.Generator, size_m: float) -> World:
@@ -62,8 +73,7 @@ def random_building(rng: np.random.Generator, size_m: float) -> World:
         end = (x + long, y) if rng.random() < 0.5 else (x, y + long)
         world.faces.append(Face((x, y), end))
     for _ in range(int(rng.integers(5, 25))):
-        corners = rectangle_corners(rng.uniform(0, size_m, 2), *rng.uniform(0.2, 1.5, 2), rng.uniform(0, np.pi))
-        world.faces.extend(polygon_faces(corners, 1.2, "box"))
+        world.faces.extend(random_box(rng, (0.0, 0.0), (size_m, size_m), 1.5))
     for _ in range(int(rng.integers(0, 15))):
         world.arcs.append(Arc(tuple(rng.uniform(0, size_m, 2)), float(rng.uniform(0.05, 0.4))))
     return world

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .no_return_lasers import Laser, SensorLog, drive, in_world, random_laser, still, with_codes
+from .no_return_lasers import Laser, SensorLog, drive, in_world, random_box, random_laser, still, with_codes
 from .streams import stream
-from .world import Arc, Face, World, polygon_faces, rectangle_corners
+from .world import Arc, Face, World, polygon_faces
 
 
 @dataclass
@@ -127,12 +127,7 @@ def along_wall(rng: np.random.Generator) -> list[SensorLog]:
     long_m = 0.3 * num + 20.0
     world = World((long_m, 20.0), faces=[Face((-20.0, 0.0), (long_m, 0.0))])
     for _ in range(num // 4):
-        corners = rectangle_corners(
-            np.array([rng.uniform(-20, long_m), away_m + rng.uniform(2, 9)]),
-            *rng.uniform(0.2, 1.0, 2),
-            rng.uniform(0, 3),
-        )
-        world.faces.extend(polygon_faces(corners, 1.2, "box"))
+        world.faces.extend(random_box(rng, (-20.0, away_m + 2.0), (long_m, away_m + 9.0), 1.0))
     if rng.random() < 0.5:
         gap_m = rng.uniform(0.5, 3.0)
         world.arcs = [Arc((x, 0.3 * away_m), 0.1) for x in np.arange(-20.0, long_m, gap_m)]
@@ -201,10 +196,7 @@ def far_facade(rng: np.random.Generator) -> list[SensorLog]:
     num, away_m = int(rng.integers(50, 1500)), float(rng.uniform(15, 38))
     world = World((100, 50), faces=[Face((-100.0, away_m), (200.0, away_m))])
     for _ in range(60):
-        corners = rectangle_corners(
-            np.array([rng.uniform(-20, 60), rng.uniform(-15, 14)]), *rng.uniform(0.2, 2.0, 2), rng.uniform(0, 3)
-        )
-        world.faces.extend(polygon_faces(corners, 1.2, "box"))
+        world.faces.extend(random_box(rng, (-20.0, -15.0), (60.0, 14.0), 2.0))
     laser = random_laser(rng, 40.0)
     x = np.linspace(0, rng.choice([0.0, 40.0]), num)
     heading = np.pi / 2 + np.deg2rad(rng.choice([0.0, 5.0])) * np.sin(0.1 * np.arange(num))

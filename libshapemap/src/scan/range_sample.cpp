@@ -9,7 +9,7 @@
 namespace shapemap {
 namespace {
 
-constexpr std::size_t kMostSampled = 600'000;  // readings: a level on 0.1 % of them is still seen 600 times
+constexpr std::size_t kMostSampled = 400'000;  // readings: a level on 0.1 % of them is still seen 400 times
 constexpr std::size_t kFewestSweeps = 1000;    // so many views are kept even of sensors with a great many beams
 constexpr double kSteepest = 2.0;              // tangent of the angle of incidence that still counts as one surface
 constexpr double kMostOfRange = 0.1;           // the same for widely spaced beams, as a share of the range
