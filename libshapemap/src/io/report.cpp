@@ -66,6 +66,13 @@ Json log_json(const RunReport& report, std::size_t which, const LogPart& part) {
                        {"longest_return_m", sensor.longest_return_m},
                        {"return_ratio", sensor.return_ratio}});
   }
+  Json no_returns = Json::array();
+  for (const NoReturnLevel& level : summary.no_returns) {
+    no_returns.push_back({{"label", level.sensor_label},
+                          {"from_m", level.from_m},
+                          {"to_m", level.to_m},
+                          {"num_readings", level.num_readings}});
+  }
   const LogFile& file = report.logs.at(which);
   return {{"path", file.path},
           {"format", file.format},
@@ -73,7 +80,8 @@ Json log_json(const RunReport& report, std::size_t which, const LogPart& part) {
           {"num_positions", summary.num_positions},
           {"num_placed", num_inside(report.result.placed(), part)},
           {"duration_s", summary.duration_s},
-          {"sensors", sensors}};
+          {"sensors", sensors},
+          {"no_returns", no_returns}};
 }
 
 Json logs_json(const RunReport& report) {
