@@ -33,7 +33,7 @@ double quantile(std::vector<double>& values, double share) {
 bool is_reading(float range) { return std::isfinite(range) && range > 0.0F; }
 
 struct Readings {
-  double middle = 0.0;
+  double middle = 0.0;     ///< of the distances that occur
   double roughness = 0.0;  ///< how much the smoother half of the surfaces deviates from straight, beam by beam
 };
 
@@ -52,6 +52,9 @@ Readings readings_of(const Log& log) {
       }
     }
   }
+  // Each distance counts once, so that a code for "no return" does not, however often it stands there.
+  std::sort(ranges.begin(), ranges.end());
+  ranges.erase(std::unique(ranges.begin(), ranges.end()), ranges.end());
   return {quantile(ranges, 0.5), quantile(bends, 0.25)};
 }
 
