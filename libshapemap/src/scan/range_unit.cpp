@@ -11,10 +11,11 @@ namespace {
 constexpr double kFarthestMiddle_m = 100.0;
 
 /// What is usual, as the middle of a log-normal distribution and its width: rooms, and the noise of lasers.
-constexpr double kUsualRange_m = 3.0;
+constexpr double kUsualRange_m = 5.0;
 constexpr double kRangeFactor = 4.0;
 constexpr double kUsualRoughness_m = 0.005;
 constexpr double kRoughnessFactor = 2.5;
+constexpr double kLeastRoughness = 0.5;  // of a unit
 
 /// No sensor measures nearer: a smaller limit was in metres.
 constexpr double kLeastMinRange_m = 0.01;
@@ -66,12 +67,10 @@ double unusual(double value, double usual, double factor) {
 /// The log density of a log under a unit, but for what is the same for both.
 double log_density(const Readings& readings, RangeUnit unit) {
   const double scale = metres_per(unit);
-  double density = -unusual(readings.middle * scale, kUsualRange_m, kRangeFactor);
-  // Readings that are whole numbers may hide all roughness.
-  if (readings.roughness > 0.0) {
-    density -= unusual(readings.roughness * scale, kUsualRoughness_m, kRoughnessFactor);
-  }
-  return density;
+  // Readings that are whole numbers hide a roughness below one of them.
+  const double roughness = std::max(readings.roughness, kLeastRoughness);
+  return -unusual(readings.middle * scale, kUsualRange_m, kRangeFactor) -
+         unusual(roughness * scale, kUsualRoughness_m, kRoughnessFactor);
 }
 
 }  // namespace
