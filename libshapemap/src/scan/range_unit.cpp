@@ -12,8 +12,8 @@ constexpr double kFarthestMiddle_m = 100.0;
 
 /// What is usual, as the middle of a log-normal distribution and its width: rooms, and the noise of lasers.
 constexpr double kUsualRange_m = 5.0;
-constexpr double kRangeFactor = 4.0;
-constexpr double kUsualRoughness_m = 0.005;
+constexpr double kRangeFactor = 3.0;
+constexpr double kUsualRoughness_m = 0.007;
 constexpr double kRoughnessFactor = 2.5;
 constexpr double kLeastRoughness = 0.5;  // of a unit
 
