@@ -123,8 +123,11 @@ std::optional<std::size_t> read_num_beams(Words& words, const LineReader& lines)
 
 /// The lists of a `scan` line.
 struct Lists {
-  std::optional<std::vector<double>> angles_rad;
-  std::optional<std::vector<double>> times_s;
+  bool has_angles = false;
+  bool has_times = false;
+  bool has_intensities = false;
+  std::vector<double> angles_rad;
+  std::vector<double> times_s;
   std::vector<double> intensities;
 };
 
@@ -159,17 +162,17 @@ void set_even_angles(const NistHeader& header, SubScan& scan, const LineReader& 
 }
 
 void set_lists(const Lists& lists, SubScan& scan, const LineReader& lines) {
-  if (lists.times_s) {
-    require_as_many(lists.times_s->size(), "times", scan, lines);
-    scan.beam_times_s.assign(lists.times_s->begin(), lists.times_s->end());
+  if (lists.has_times) {
+    require_as_many(lists.times_s.size(), "times", scan, lines);
+    scan.beam_times_s.assign(lists.times_s.begin(), lists.times_s.end());
   }
-  if (!lists.intensities.empty()) {
+  if (lists.has_intensities) {
     require_as_many(lists.intensities.size(), "intensities", scan, lines);
     scan.intensities.assign(lists.intensities.begin(), lists.intensities.end());
   }
-  if (lists.angles_rad) {
-    require_as_many(lists.angles_rad->size(), "angles", scan, lines);
-    set_beam_angles(scan, *lists.angles_rad);
+  if (lists.has_angles) {
+    require_as_many(lists.angles_rad.size(), "angles", scan, lines);
+    set_beam_angles(scan, lists.angles_rad);
   }
 }
 
@@ -214,10 +217,13 @@ SubScan read_nist_scan(Words& words, const LineReader& lines, const NistUnits& u
       has_ranges = true;
     } else if (field == "angles") {
       lists.angles_rad = fields.list("angle", units.radians_per_unit);
+      lists.has_angles = true;
     } else if (field == "times") {
       lists.times_s = fields.list("time", 1.0);
+      lists.has_times = true;
     } else if (field == "intensities") {
       lists.intensities = fields.list("intensity", 1.0);
+      lists.has_intensities = true;
     } else if (field == "time") {
       scan.start_s = fields.number("time");
     } else if (!fields.read_shared(field, header)) {
@@ -229,7 +235,7 @@ SubScan read_nist_scan(Words& words, const LineReader& lines, const NistUnits& u
   if (!has_ranges) throw lines.error("expected 'ranges' after the heading");
   check_num_readings(sensor, scan, lines);
   set_lists(lists, scan, lines);
-  if (!lists.angles_rad) set_even_angles(header, scan, lines, oddities);
+  if (!lists.has_angles) set_even_angles(header, scan, lines, oddities);
   return std::move(scan);
 }
 
