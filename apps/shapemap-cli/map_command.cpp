@@ -79,7 +79,7 @@ int run_map(const MapArguments& arguments) {
 
   set_interrupt_policy(OnInterrupt::kFinishStep);
   const Stopwatch mapping;
-  OutputSet outputs;
+  OutputSet outputs(arguments.force);
   const MapResult result = map_and_trace(logs, arguments, warnings, costs, outputs);
   costs.map_s = mapping.seconds();
   require_a_map(arguments, result);

@@ -9,6 +9,7 @@
 #include "log_formats.hpp"
 #include "mount_pose.hpp"
 #include "no_return_level.hpp"
+#include "shapemap/scan/plausibility.hpp"
 #include "text.hpp"
 
 namespace shapemap {
@@ -134,7 +135,8 @@ class CarmenReader {
 
     const double num_steps = static_cast<double>(scan.ranges_m.size()) - 1.0;
     if (scan.angle_step_rad == 0.0 && num_steps > 0.0) scan.angle_step_rad = fov_rad / num_steps;
-    if (scan.angle_step_rad == 0.0) throw lines_.error("the angular resolution and the field of view are 0");
+    if (scan.angle_step_rad == 0.0 && num_steps > 0.0)
+      throw lines_.error("the angular resolution and the field of view are 0");
     const double excess_rad = std::abs(scan.angle_step_rad) * num_steps - std::abs(fov_rad);
     if (fov_rad != 0.0 && std::abs(excess_rad) > 2 * std::abs(scan.angle_step_rad)) warn_of_angles();
 
@@ -175,6 +177,8 @@ class CarmenReader {
   void add(SubScan scan, double timestamp_s) {
     scan.robot_from_sensor = mount_;
     mount_ = MountPose{};
+    lines_.require_plausible(scan);
+    lines_.refuse(implausible_time(timestamp_s));
     if (!joins_previous_ || log_.positions.empty()) {
       log_.positions.emplace_back();
       log_.positions.back().timestamp_s = timestamp_s;

@@ -5,6 +5,8 @@
 #include <map>
 #include <utility>
 
+#include "shapemap/scan/plausibility.hpp"
+
 namespace shapemap {
 namespace {
 
@@ -110,6 +112,7 @@ class NistReader {
     if (sensor.prototype.angle_step_rad == 0.0 && sensor.num_beams > 1) {
       throw lines_.error("sensor '" + name + "' has no 'angle_step', or one of 0");
     }
+    lines_.refuse(implausibility(sensor.prototype, sensor.num_beams));
     if (!sensors_.emplace(name, sensor).second) throw lines_.error("sensor '" + name + "' is declared twice");
   }
 
@@ -142,12 +145,14 @@ class NistReader {
   void read_position(Words& words) {
     Position position;
     position.timestamp_s = finite_number(words, lines_, "the timestamp");
+    lines_.refuse(implausible_time(position.timestamp_s));
     const std::string_view field = words.next();
     if (field == "reference") {
       Pose2 pose;
       pose.x_m = length_m(words, "reference");
       pose.y_m = length_m(words, "reference");
       pose.theta_rad = angle_rad(words, "reference");
+      lines_.refuse(implausibility(pose));
       position.reference_pose = pose;
     } else if (!field.empty()) {
       throw lines_.error("unexpected '" + std::string(field) + "', expected 'reference' or nothing");
@@ -166,6 +171,7 @@ class NistReader {
     scan.nominal_heading_rad = angle_rad(words, "heading");
     if (words.next() != "ranges") throw lines_.error("expected 'ranges' after the heading");
     read_ranges(words, sensor->second.num_beams, scan);
+    lines_.require_plausible(scan);
     if (choice_.takes(name, false)) log_.positions.back().sub_scans.push_back(std::move(scan));
   }
 

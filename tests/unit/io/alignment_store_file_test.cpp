@@ -41,8 +41,8 @@ PoseHypothesis hypothesis(double seed) {
   h.fit.ref_from_query = {1.0 / seed, std::numeric_limits<double>::denorm_min(), -seed};
   for (Eigen::Index i = 0; i < 9; ++i) h.fit.information(i / 3, i % 3) = seed / static_cast<double>(7 + i);
   h.fit.partners = 37;
-  h.fit.rms_m = std::numeric_limits<double>::quiet_NaN();
-  h.fit.lever_m = std::numeric_limits<double>::infinity();
+  h.fit.rms_m = std::numeric_limits<double>::denorm_min();
+  h.fit.lever_m = std::nextafter(seed, 10.0);
   return h;
 }
 
