@@ -172,12 +172,11 @@ def test_a_scan_of_one_beam_survives_carmen(run, tmp_path):
     assert "beams       1 over" in result.stdout
 
 
+@patience.without_sanitizers
 def test_too_many_scans_are_refused_before_the_memory_is_gone(cli_path, tmp_path):
     with gzip.open(tmp_path / "bomb.gz", "wb", compresslevel=1) as file:
         for _ in range(60):
             file.write(b"1 1\n" * 100_000)
-    if patience.SLOWDOWN > 1:
-        pytest.skip("sanitizers need more memory by themselves")
     limit = (3 << 30, resource.RLIM_INFINITY)
     result = subprocess.run(
         [cli_path, "bomb.gz", "--fov-deg", "180", "--first", "10", *OUT],

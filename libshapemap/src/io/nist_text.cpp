@@ -113,6 +113,7 @@ class NistReader {
       throw lines_.error("sensor '" + name + "' has no 'angle_step', or one of 0");
     }
     lines_.refuse(implausibility(sensor.prototype, sensor.num_beams));
+    lines_.refuse(implausible_count(sensors_.size(), "sensors"));
     if (!sensors_.emplace(name, sensor).second) throw lines_.error("sensor '" + name + "' is declared twice");
   }
 
@@ -146,6 +147,7 @@ class NistReader {
     Position position;
     position.timestamp_s = finite_number(words, lines_, "the timestamp");
     lines_.refuse(implausible_time(position.timestamp_s));
+    lines_.refuse(implausible_count(log_.positions.size(), "positions"));
     const std::string_view field = words.next();
     if (field == "reference") {
       Pose2 pose;

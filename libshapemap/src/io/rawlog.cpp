@@ -118,9 +118,8 @@ class RawlogReader {
 
   void add(Position position) {
     if (position.sub_scans.empty()) return;
-    if (log_.positions.size() >= plausible::kMostScans) {
-      throw RawlogDamage{skeleton_.offset(), "more than " + std::to_string(plausible::kMostScans) + " positions"};
-    }
+    const std::string fault = implausible_count(log_.positions.size(), "positions");
+    if (!fault.empty()) throw RawlogDamage{skeleton_.offset(), fault};
     log_.positions.push_back(std::move(position));
   }
 

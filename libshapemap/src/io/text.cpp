@@ -57,9 +57,7 @@ std::optional<std::string_view> LineReader::next() {
 
 void LineReader::require_plausible(const SubScan& scan) {
   refuse(implausibility(scan));
-  if (++num_scans_ > plausible::kMostScans) {
-    throw error("more than " + std::to_string(plausible::kMostScans) + " scans, expected a log of fewer");
-  }
+  refuse(implausible_count(num_scans_++, "scans"));
 }
 
 void LineReader::refuse(const std::string& fault) const {

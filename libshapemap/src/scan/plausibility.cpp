@@ -93,6 +93,11 @@ std::string implausible_time(double timestamp_s) {
   return first_fault({{"timestamp", timestamp_s, kMostTime_s, " s", "at most 1e+19 s"}});
 }
 
+std::string implausible_count(std::size_t num_before, const char* what) {
+  if (num_before < kMostScans) return "";
+  return "more than " + std::to_string(kMostScans) + " " + what + ", expected a log of fewer";
+}
+
 std::string implausibility(const Position& position) {
   std::string fault = implausible_time(position.timestamp_s);
   if (fault.empty() && position.reference_pose) {

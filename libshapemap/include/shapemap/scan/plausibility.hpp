@@ -40,6 +40,8 @@ std::string implausibility(const SubScan& scan);
 /// The same of a pose that a log states, and of a time.
 std::string implausibility(const Pose2& pose);
 std::string implausible_time(double timestamp_s);
+/// The same of a log that has `num_before` scans, positions or sensors already, when one more comes.
+std::string implausible_count(std::size_t num_before, const char* what);
 
 /// The first fault of a whole position: its time, its reference pose or one of its sub-scans.
 std::string implausibility(const Position& position);
