@@ -154,17 +154,18 @@ TEST_F(AlignmentStoreFileTest, WritesAtOnce) {
 
 TEST_F(AlignmentStoreFileTest, TakesManyThreads) {
   log_ = log_of(400);
+  const auto of = [](std::size_t i) { return hypothesis(1.0 + 0.01 * static_cast<double>(i)); };
   {
     AlignmentStoreFile state = opened(StateOpening::kCreate);
     parallel_for(400, 4, [&](std::size_t i) {
-      state.keep({i, 399 - i}, {hypothesis(static_cast<double>(i + 1))});
+      state.keep({i, 399 - i}, {of(i)});
       if (!state.find({i, 399 - i})) throw std::runtime_error("lost");
     });
   }
   AlignmentStoreFile state = opened(StateOpening::kResume);
   EXPECT_EQ(state.num_resumed(), 400U);
   for (std::size_t i = 0; i < 400; ++i) {
-    EXPECT_THAT(state.find({i, 399 - i})->front(), HasSameBitsAs(hypothesis(static_cast<double>(i + 1))));
+    EXPECT_THAT(state.find({i, 399 - i})->front(), HasSameBitsAs(of(i)));
   }
 }
 

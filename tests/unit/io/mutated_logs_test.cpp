@@ -31,14 +31,14 @@ int num_mutations() {
   return wanted != nullptr ? std::atoi(wanted) : kFewMutations;
 }
 
-/// A walk of three steps through a room, with few beams.
-Log walk() {
+/// Through a room, with few beams.
+Log walk(int num_positions = 3, double step_m = 0.2) {
   Log log;
   test::Scanner scanner;
   scanner.num_beams = 60;
   scanner.view_rad = kPi;
-  for (int i = 0; i < 3; ++i) {
-    log.positions.push_back(test::scan_of(test::uneven_room(), {0.2 * i, 0.05 * i, 0.05 * i}, scanner));
+  for (int i = 0; i < num_positions; ++i) {
+    log.positions.push_back(test::scan_of(test::uneven_room(), {step_m * i, 0.05 * i, 0.05 * i}, scanner));
     log.positions.back().timestamp_s = 100.0 + i;
     SubScan& scan = log.positions.back().sub_scans.front();
     scan.sensor_label = "laser";
@@ -264,7 +264,7 @@ class MutatedStates : public testing::Test {
 
   TempFolder folder_;
   std::string path_ = folder_.path("run.state");
-  Log log_ = walk();
+  Log log_ = walk(5, 0.6);
   MappingOptions options_;
 };
 

@@ -106,9 +106,10 @@ TEST_F(NistText, FaultsAreNamedWithTheirLine) {
 }
 
 TEST_F(NistText, ABillionBeamsThatAreNotThereAskForNoMemory) {
-  EXPECT_THAT(error("shapemap-scans 1\nsensor l beams 1000000000 angle_step 1\nposition 0\n"
-                    "scan l heading 0 ranges 1\n"),
-              HasSubstr("a.nist:4: too few values: 1 readings, but sensor 'l' has 1000000000 beams"));
+  EXPECT_THAT(error("shapemap-scans 1\nsensor l beams 1000000000 angle_step 1\n"),
+              HasSubstr("a.nist:2: 1000000000 beams, expected at most a million"));
+  EXPECT_THAT(error("shapemap-scans 1\nsensor l beams 700 angle_step 1\nposition 0\nscan l heading 0 ranges 1\n"),
+              HasSubstr("a.nist:4: too few values: 1 readings, but sensor 'l' has 700 beams"));
 }
 
 }  // namespace
