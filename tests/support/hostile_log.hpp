@@ -9,7 +9,7 @@
 #include "shapemap/io/log_file.hpp"
 #include "shapemap/map/map_log.hpp"
 
-/// What is done with logs that may hold anything: the mutation test and the fuzzer share it.
+/// What is done with logs that may hold anything.
 namespace shapemap::test {
 
 enum class Outcome { kMapped, kRefused };
