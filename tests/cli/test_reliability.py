@@ -191,6 +191,7 @@ def test_too_many_scans_are_refused_before_the_memory_is_gone(cli_path, tmp_path
     assert "bomb.gz:5000001: more than 5000000 scans" in result.stderr
 
 
+@patience.without_sanitizers  # their own memory has no place beside such stacks
 def test_without_a_thread_to_be_had_one_does_all(cli_path, tmp_path, room_log, files_of):
     """No thread has room for a stack as large as this."""
     limit = 1 << 47
