@@ -23,7 +23,8 @@ from shapemap_sim.poses import Array
 from .datasets import WITH_POSES, DatasetError, LogSpec
 from .relations import RelationFile, ScanIndex, read_relations
 
-RECORDINGS = (".bag", ".dat.gz", ".txt.gz", ".dat")  # what scripts/convert_logs.py reads
+# What scripts/convert_logs.py reads.
+RECORDINGS = (".bag", ".bag.gz", ".db3", ".mcap", ".csv", ".csv.gz", ".dat.gz", ".txt.gz", ".dat")
 
 
 @dataclass(frozen=True)
@@ -176,10 +177,10 @@ def convert_recording(path: Path, angle_step_deg: float | None, made: Path) -> N
     step = [] if angle_step_deg is None else [f"--angle-step-deg={angle_step_deg}"]
     arguments = convert_logs.parse_arguments([str(path), str(made), *step])
     try:
-        recording, _ = convert_logs.read(path, arguments)
+        log = convert_logs.read(path, arguments)
     except convert_logs.UnknownLogError as error:
         raise DatasetError(str(error)) from None
-    write_whole(made, convert_logs.text_of(replace(recording, references=None), path.name))
+    write_whole(made, convert_logs.text_of(replace(log, references=None), path.name))
 
 
 def convert_rawlog(path: Path, made: Path, cli: Path) -> None:

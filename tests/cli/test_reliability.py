@@ -18,8 +18,8 @@ RANGES = " ".join(f"{2.0 + 0.1 * i:.1f}" for i in range(20))
 OUT = ["--out", "map.png"]
 
 
-def robot_laser(step, start="0"):
-    return f"ROBOTLASER1 0 {start} 3 {step} 81 0 0 20 {RANGES} 0 0 0 0 0 0 0 0 0 0 0 0 0 h 0\n"
+def robot_laser(step, start="0", fov="3"):
+    return f"ROBOTLASER1 0 {start} {fov} {step} 81 0 0 20 {RANGES} 0 0 0 0 0 0 0 0 0 0 0 0 0 h 0\n"
 
 
 def nist(sensor, label="a", heading="0"):
@@ -30,13 +30,13 @@ def nist(sensor, label="a", heading="0"):
 @pytest.mark.parametrize(
     ("content", "says"),
     [
-        (robot_laser("1e12"), ["x.log:1:", "angle_step of 1e+12 rad", "at most a full turn"]),
-        (robot_laser("1e308"), ["x.log:1:", "angle_step of 1e+308 rad"]),
+        (robot_laser("1e12", fov="0"), ["x.log:1:", "neither the angular resolution nor the field of view"]),
+        (robot_laser("1e308", fov="1e308"), ["x.log:1:", "neither the angular resolution nor the field of view"]),
         (robot_laser("0.01", "-1e9"), ["x.log:1:", "first_angle of -1e+09 rad"]),
         (robot_laser("1e-300"), ["x.log:1:", "angle_step of 1e-300 rad"]),
-        (nist("angle_step 1e12"), ["x.log:3:", "angle_step of 1e+12 rad"]),
-        (nist("angle_step 1e308"), ["x.log:3:", "angle_step of 1e+308 rad"]),
-        (nist("angle_step 0.1 first_angle 2147483648"), ["x.log:3:", "first_angle of 2.14748e+09 rad"]),
+        (nist("angle_step 1e12"), ["x.log:5:", "neither angle_step nor last_angle", "at most a full turn"]),
+        (nist("angle_step 1e308"), ["x.log:5:", "neither angle_step nor last_angle"]),
+        (nist("angle_step 0.1 first_angle 2147483648"), ["x.log:5:", "first_angle of 2.14748e+09 rad"]),
         (nist("angle_step 0.1 mount -3.05e207 0 0 0 0 0"), ["x.log:3:", "mount", "-3.05e+207 m", "at most 100 m"]),
         (nist("angle_step 0.1", heading="1e200"), ["x.log:5:", "heading of 1e+200 rad"]),
         (nist("angle_step 0.1").replace("position 1", "position 1e300"), ["x.log:4:", "timestamp of 1e+300 s"]),
@@ -47,6 +47,14 @@ def test_a_header_that_no_sensor_has_is_an_error_with_its_place(fails, tmp_path,
     (tmp_path / "x.log").write_text(content)
     fails(3, "x.log", *OUT, says=says)
     fails(3, "info", "x.log", says=says)
+
+
+@pytest.mark.parametrize("step", ["1e12", "1e308"])
+def test_an_impossible_resolution_gives_way_to_the_field_of_view(run, tmp_path, step):
+    (tmp_path / "x.log").write_text(robot_laser(step))
+    result = run("x.log", *OUT)
+    assert result.returncode == 0, result.stderr
+    assert "warning: x.log:1: field of view and angular resolution contradict each other" in result.stderr
 
 
 def rawlog_with_wide_apertures(run, folder, wide):

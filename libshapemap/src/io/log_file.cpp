@@ -4,6 +4,7 @@
 #include "log_formats.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/core/printable.hpp"
+#include "shapemap/scan/timestamps.hpp"
 
 namespace shapemap {
 namespace {
@@ -49,9 +50,9 @@ void finish_log(const ByteSource& source, Log& log) {
   }
 }
 
-Log read_log(const std::string& path, LogFormat format, const LogReadOptions& options) {
-  validate(options);
-  ByteSource source(path);
+namespace {
+
+Log read_as(ByteSource& source, LogFormat format, const LogReadOptions& options) {
   switch (format == LogFormat::kAuto ? recognise_log_format(source) : format) {
     case LogFormat::kRawlog:
       return read_rawlog(source, options);
@@ -62,20 +63,66 @@ Log read_log(const std::string& path, LogFormat format, const LogReadOptions& op
     case LogFormat::kAuto:
       break;
   }
-  throw InputError(path + ": unknown log format");
+  throw InputError(source.path() + ": unknown log format");
+}
+
+/// Readings of a log that does not say their unit become metres.
+void settle_range_unit(const std::string& path, RangeUnit unit, Log& log) {
+  if (log.states_range_unit) return;
+  const bool is_recognised = unit == RangeUnit::kAuto;
+  if (is_recognised) unit = recognised_range_unit(log);
+  scale_ranges(log, unit);
+  if (!is_recognised || unit == RangeUnit::kMetre) return;
+  log.warnings.push_back(path + ": the readings are taken for " +
+                         (unit == RangeUnit::kMillimetre ? "millimetres" : "centimetres") +
+                         ", since they are too long for metres; --range-unit says otherwise");
+}
+
+void turn_upside_down(Log& log) {
+  for (Position& position : log.positions) {
+    for (SubScan& scan : position.sub_scans) {
+      scan.robot_from_sensor.roll_rad = wrap_angle(scan.robot_from_sensor.roll_rad + kPi);
+    }
+  }
+}
+
+}  // namespace
+
+Log read_log(const std::string& path, LogFormat format, const LogReadOptions& options) {
+  validate(options);
+  ByteSource source(path);
+  Log log = read_as(source, format, options);
+  settle_range_unit(path, options.range_unit, log);
+  for (const std::string& line : mend_timestamps(log.positions).lines()) log.warnings.push_back(path + ": " + line);
+  if (options.upside_down) turn_upside_down(log);
+  return log;
 }
 
 std::string what_is_lost(const Log& log, LogFormat format) {
   if (format == LogFormat::kNist) return "";
   bool headings = false;
   bool references = false;
+  bool uneven = false;
+  bool timed = false;
+  bool intense = false;
   for (const Position& position : log.positions) {
     references = references || position.reference_pose.has_value();
-    for (const SubScan& scan : position.sub_scans) headings = headings || scan.nominal_heading_rad != 0.0;
+    for (const SubScan& scan : position.sub_scans) {
+      headings = headings || scan.nominal_heading_rad != 0.0;
+      uneven = uneven || !scan.is_evenly_spaced();
+      timed = timed || scan.start_s != 0.0 || scan.beam_time_step_s > 0.0 || !scan.beam_times_s.empty();
+      intense = intense || !scan.intensities.empty();
+    }
   }
   std::string lost;
-  if (headings) lost = "nominal headings become part of the mounts of the lasers";
-  if (references) lost += std::string(lost.empty() ? "" : ", ") + "reference poses are left out";
+  const auto lose = [&](bool is_lost, const char* what) {
+    if (is_lost) lost += std::string(lost.empty() ? "" : ", ") + what;
+  };
+  lose(headings, "nominal headings become part of the mounts of the lasers");
+  lose(references, "reference poses are left out");
+  lose(uneven, "readings go to the nearest of evenly spaced beams");
+  lose(timed, "times of beams are left out");
+  lose(intense, "intensities are left out");
   return lost.empty() ? "" : "a " + enum_name(format) + " log cannot hold all: " + lost;
 }
 

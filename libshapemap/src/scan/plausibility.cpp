@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/scan/plausibility.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <sstream>
+#include <utility>
 
 #include "shapemap/core/errors.hpp"
 
@@ -52,6 +54,41 @@ std::string fault_of_angles(const SubScan& scan, std::size_t num_beams) {
       {{"an angle from the first beam to the last", span_rad, kMostScanAngle_rad, " rad", "at most two full turns"}});
 }
 
+/// Where beams with an angle each point. What is made of them has a place for every step between the outermost.
+std::string fault_of_beam_angles(const SubScan& scan) {
+  for (const double angle_rad : scan.beam_angles_rad) {
+    if (std::abs(angle_rad) <= kMostScanAngle_rad) continue;  // written so that NaN is a fault
+    return stated("a beam's angle", angle_rad, " rad", "at most two full turns");
+  }
+  const auto [lowest, highest] = std::minmax_element(scan.beam_angles_rad.begin(), scan.beam_angles_rad.end());
+  const double step_rad = std::abs(scan.angle_step_rad);
+  if (step_rad == 0.0 || *highest - *lowest <= step_rad * static_cast<double>(kMostBeams)) return "";
+  return stated("beams' angles with a step", step_rad, " rad", "at most a million steps from the first to the last");
+}
+
+/// Each list is empty or has an entry for each reading.
+std::string fault_of_lists(const SubScan& scan) {
+  const std::size_t num_readings = scan.ranges_m.size();
+  for (const auto& [name, size] :
+       {std::pair{"beam angles", scan.beam_angles_rad.size()}, std::pair{"beam times", scan.beam_times_s.size()},
+        std::pair{"intensities", scan.intensities.size()}}) {
+    if (size == 0 || size == num_readings) continue;
+    return std::to_string(size) + " " + name + ", expected none or " + std::to_string(num_readings);
+  }
+  return "";
+}
+
+std::string fault_of_times(const SubScan& scan) {
+  constexpr const char* kExpected = "at most a day from the position's timestamp";
+  for (const float time_s : scan.beam_times_s) {
+    if (!(std::abs(static_cast<double>(time_s)) <= kMostSweep_s)) {
+      return stated("a beam's time", static_cast<double>(time_s), " s", kExpected);
+    }
+  }
+  return first_fault({{"the first beam's time", scan.start_s, kMostSweep_s, " s", kExpected},
+                      {"time_step", scan.beam_time_step_s, kMostSweep_s, " s", kExpected}});
+}
+
 std::string fault_of_mount(const MountPose& mount) {
   constexpr const char* kLength = "at most 100 m from the robot's origin";
   constexpr const char* kAngle = "at most two full turns";
@@ -75,7 +112,8 @@ std::string fault_of_limits(const SubScan& scan) {
 std::string implausibility(const SubScan& scan, std::size_t num_beams) {
   if (num_beams > kMostBeams) return std::to_string(num_beams) + " beams, expected at most a million";
   for (const std::string& fault :
-       {fault_of_angles(scan, num_beams), fault_of_mount(scan.robot_from_sensor), fault_of_limits(scan)}) {
+       {fault_of_lists(scan), scan.is_evenly_spaced() ? fault_of_angles(scan, num_beams) : fault_of_beam_angles(scan),
+        fault_of_times(scan), fault_of_mount(scan.robot_from_sensor), fault_of_limits(scan)}) {
     if (!fault.empty()) return fault;
   }
   return "";
@@ -103,6 +141,10 @@ std::string implausibility(const Position& position) {
   if (fault.empty() && position.reference_pose) {
     fault = implausibility(*position.reference_pose);
     if (!fault.empty()) fault = "reference pose: " + fault;
+  }
+  if (fault.empty() && position.recorded_heading_rad) {
+    fault = first_fault({{"the recorded heading", *position.recorded_heading_rad, kMostHeading_rad, " rad",
+                          "at most a hundred turns"}});
   }
   for (std::size_t s = 0; fault.empty() && s < position.sub_scans.size(); ++s) {
     fault = implausibility(position.sub_scans[s]);

@@ -11,6 +11,7 @@
 #include "shapemap/core/observer.hpp"
 #include "shapemap/map/align_pairs.hpp"
 #include "shapemap/map/map_log.hpp"
+#include "shapemap/scan/beam_angles.hpp"
 
 namespace shapemap {
 namespace {
@@ -89,6 +90,36 @@ TEST(Plausibility, AScanGoesRoundTwiceAtMostAndItsBeamsAreApart) {
     EXPECT_THAT(implausibility(scan), HasSubstr("for a scan of 181 beams")) << step_rad;
   }
   EXPECT_THAT(implausibility(half_circle(), 1'000'001), HasSubstr("1000001 beams"));
+}
+
+TEST(Plausibility, BeamsWithAnglesAndTimesOfTheirOwnAreLookedAtOneByOne) {
+  SubScan scan;
+  scan.ranges_m.assign(3, 2.0F);
+  set_beam_angles(scan, {0.0, 0.1, 0.3});
+  scan.beam_times_s = {0.0F, 0.01F, 0.02F};
+  scan.intensities = {1.0F, 2.0F, 3.0F};
+  EXPECT_THAT(implausibility(scan), IsEmpty());
+  SubScan wrong = scan;
+  wrong.beam_angles_rad[1] = kNan;
+  EXPECT_THAT(implausibility(wrong), HasSubstr("a beam's angle of nan rad"));
+  wrong = scan;
+  wrong.angle_step_rad = 1e-9;  // would make 300 million bearings of three beams
+  EXPECT_THAT(implausibility(wrong), HasSubstr("at most a million steps"));
+  wrong = scan;
+  wrong.beam_times_s[2] = std::numeric_limits<float>::infinity();
+  EXPECT_THAT(implausibility(wrong), HasSubstr("a beam's time of inf s"));
+  wrong = scan;
+  wrong.start_s = 1e9;
+  EXPECT_THAT(implausibility(wrong), HasSubstr("the first beam's time of 1e+09 s"));
+  wrong = scan;
+  wrong.beam_time_step_s = kNan;
+  EXPECT_THAT(implausibility(wrong), HasSubstr("time_step of nan s"));
+  wrong = scan;
+  wrong.intensities.pop_back();
+  EXPECT_THAT(implausibility(wrong), HasSubstr("2 intensities, expected none or 3"));
+  wrong = scan;
+  wrong.beam_angles_rad.push_back(0.4);
+  EXPECT_THAT(implausibility(wrong), HasSubstr("4 beam angles, expected none or 3"));
 }
 
 TEST(Plausibility, OfAPositionTheFirstFaultIsSaid) {

@@ -25,6 +25,8 @@ inline constexpr double kMostMount_m = 100.0;
 /// A maximum range of FLT_MAX is a driver's way to say that there is none.
 inline constexpr double kMostMaxRange_m = 3.5e38;
 inline constexpr double kMostMinRange_m = 1000.0;
+/// The slowest scanners take hours for a sweep.
+inline constexpr double kMostSweep_s = 1e5;
 /// Map grids put the origin up to 1e7 m away.
 inline constexpr double kMostCoordinate_m = 1e9;
 /// Nanoseconds in a 64-bit counter, taken for seconds, are harmless.
