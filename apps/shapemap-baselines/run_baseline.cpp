@@ -32,13 +32,15 @@ void check_paths(const Arguments& arguments) {
   }
 }
 
-/// What shapemap takes for no return is none for the other methods either.
+/// What shapemap takes for no return is none for the other methods either. Beams that hit nothing can still be told
+/// from those whose reading means nothing, for the picture.
 void drop_non_returns(Log& log, const ReturnOptions& options) {
   for (Position& position : log.positions) {
     for (SubScan& sub_scan : position.sub_scans) {
       const RangeLimits limits = range_limits(sub_scan, options);
       for (float& range_m : sub_scan.ranges_m) {
-        if (!is_return(range_m, limits)) range_m = std::numeric_limits<float>::quiet_NaN();
+        if (is_return(range_m, limits)) continue;
+        range_m = is_open(range_m, limits) ? std::numeric_limits<float>::quiet_NaN() : 0.0F;
       }
     }
   }
@@ -88,6 +90,10 @@ void write_outputs(const Arguments& arguments, const Log& log, const std::vector
     const GridMap map = build_grid_map(log, placed, arguments.settings.returns, arguments.settings.grid);
     cli::set_interrupt_policy(cli::OnInterrupt::kFinishStep);
     cli::add_map(arguments.map_path, map, nullptr, outputs);
+    if (map.num_outside > 0 && !arguments.quiet) {
+      std::fprintf(stderr, "%s: %zu of %zu returns lie outside of the picture; --draw-all draws them\n",
+                   cli::kProgramName, map.num_outside, map.num_returns);
+    }
   }
   outputs.add_text(arguments.trajectory_path, tum_trajectory(placed));
   outputs.commit();

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import re
 import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -111,7 +112,8 @@ def checksum(text: str, reference: Array | None, relations: list[RelationFile]) 
 
 
 def renumbered(text: str, every: int = 1, first: int = 0) -> tuple[list[float], str]:
-    """The times of all scans or positions, and the log of those that are used with 1, 2, 3 ... instead."""
+    """The times of all scans or positions, and the log of those that are used with 1, 2, 3 ... instead. What a scan
+    says of the times of its beams keeps its share of the usual time between scans."""
     times: list[float] = []
     lines: list[str] = []
     num_used, used = 0, True
@@ -127,9 +129,19 @@ def renumbered(text: str, every: int = 1, first: int = 0) -> tuple[list[float], 
                 line = " ".join(words)
         if used or not (words and words[0] in (*_TIME_FIELDS, "scan")):
             lines.append(line)
-    return times, "\n".join(lines) + "\n"
+    steps = np.diff(np.asarray(times))
+    usual_s = float(np.median(steps[steps > 0.0])) * every if (steps > 0.0).any() else 1.0
+    return times, "\n".join(with_beam_times(line, usual_s) for line in lines) + "\n"
 
 
+def with_beam_times(line: str, seconds: float) -> str:
+    """A line of our text format with the times of beams in units of `seconds`."""
+    if not line.startswith(("sensor ", "scan ")):
+        return line
+    return _BEAM_TIMES.sub(lambda found: f"{found[1]} {float(found[2]) / seconds:.9g}", line)
+
+
+_BEAM_TIMES = re.compile(r"\b(time|time_step) ([-+.0-9eE]+)")
 _TIME_FIELDS: dict[str, Callable[[list[str]], int]] = {
     "FLASER": lambda words: 2 + int(words[1]) + 6,
     "position": lambda words: 1,
