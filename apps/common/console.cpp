@@ -54,7 +54,9 @@ std::string sensor_text(const LogSummary::Sensor& sensor, const LogSummary& summ
                 "  sub-scans   %zu\n  beams       %s over %.6g deg\n  returns     %.1f %%, %.2f to %.2f m\n",
                 sensor.num_sub_scans, beams_text(sensor).c_str(), sensor.fov_rad / kDegree, 100.0 * sensor.return_ratio,
                 sensor.shortest_return_m, sensor.longest_return_m);
-  std::string all = "sensor      " + (sensor.label.empty() ? "(without a label)" : sensor.label) + "\n" + text;
+  std::string all = "sensor      " +
+                    (sensor.label.empty() ? "(without a label)" : printable(sensor.label, kMostNameShown)) + "\n" +
+                    text;
   if (sensor.max_range_m > 0.0) {
     std::snprintf(text, sizeof text, "  max. range  %.6g m\n", sensor.max_range_m);
     all += text;
@@ -71,29 +73,7 @@ std::string sensor_text(const LogSummary::Sensor& sensor, const LogSummary& summ
   return all + oddities_text(sensor);
 }
 
-/// Length of the UTF-8 character at text[at], 0 when there is none.
-std::size_t character_length(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-  const unsigned first = byte(at);
-  const std::size_t length = first < 0x80 ? 1 : first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-  if (first > 0xF4 || (first >= 0x80 && first < 0xC2)) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(at + i) & 0xC0U) != 0x80U) return 0;
-  }
-  return length;
-}
-
 }  // namespace
-
-std::string printable(std::string text) {
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = character_length(text, at);
-    const auto first = static_cast<unsigned char>(text[at]);
-    if (length == 0 || first < 0x20 || first == 0x7F) text[at] = '?';
-    at += length == 0 ? 1 : length;
-  }
-  return text;
-}
 
 void print_text(const std::string& text) {
   const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
@@ -102,14 +82,15 @@ void print_text(const std::string& text) {
   }
 }
 
+void print_line(std::string_view text, std::size_t most) {
+  std::fprintf(stderr, "%s: %s\n", kProgramName, printable(text, most).c_str());
+}
+
 void print_lines(const std::string& prefix, const std::vector<std::string>& lines, std::size_t max_lines,
                  const std::string& where) {
-  for (std::size_t i = 0; i < lines.size() && i < max_lines; ++i) {
-    std::fprintf(stderr, "%s: %s%s\n", kProgramName, prefix.c_str(), printable(lines[i]).c_str());
-  }
+  for (std::size_t i = 0; i < lines.size() && i < max_lines; ++i) print_line(prefix + lines[i]);
   if (lines.size() > max_lines) {
-    std::fprintf(stderr, "%s: %s... and %zu more%s\n", kProgramName, prefix.c_str(), lines.size() - max_lines,
-                 where.c_str());
+    print_line(prefix + "... and " + std::to_string(lines.size() - max_lines) + " more" + where);
   }
 }
 

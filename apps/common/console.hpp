@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "shapemap/core/printable.hpp"
 #include "shapemap/io/log_file.hpp"
 
 namespace shapemap::cli {
@@ -14,8 +16,8 @@ inline constexpr std::size_t kMaxListed = 20;
 /// To standard output. Throws OutputError when it does not take it.
 void print_text(const std::string& text);
 
-/// `text` as one line that a terminal can show: control characters and bytes that are no UTF-8 become '?'.
-std::string printable(std::string text);
+/// To stderr, with the program's name: one line whatever `text` holds, see core/printable.hpp.
+void print_line(std::string_view text, std::size_t most = kMostShown);
 
 /// To stderr, each line with the program's name and `prefix`; after `max_lines` only how many more there are, and
 /// `where` to find them.

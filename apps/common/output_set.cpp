@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "output_set.hpp"
 
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -50,6 +53,30 @@ void check_output(const std::string& path, bool force) {
   }
 }
 
+/// Held while the files of one run go to their places. Where a folder cannot be locked, or is locked for long, the run
+/// goes on without.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::string& folder)
+      : descriptor_(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    for (int i = 0; i < kTries && descriptor_ >= 0; ++i) {
+      if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+      ::poll(nullptr, 0, kWait_ms);
+    }
+  }
+  ~FolderLock() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  static constexpr int kWait_ms = 10;
+  static constexpr int kTries = 500;
+
+  int descriptor_;
+};
+
 /// `message` about the file that the user knows, not about the temporary one.
 std::string with_name(std::string message, const std::string& temporary_path, const std::string& path) {
   const std::size_t at = message.find(temporary_path);
@@ -67,7 +94,11 @@ bool is_stream(const std::string& path) {
 bool same_file(const std::string& a, const std::string& b) {
   if (a == "-" || b == "-") return a == b;
   std::error_code ignored;
-  const auto full = [&](const std::string& path) { return fs::weakly_canonical(fs::absolute(path), ignored); };
+  const auto full = [](const std::string& path) {
+    std::error_code error;
+    const fs::path resolved = fs::weakly_canonical(fs::absolute(path), error);
+    return error ? fs::absolute(path).lexically_normal() : resolved;  // in a folder that may not be entered
+  };
   return full(a) == full(b) || fs::equivalent(a, b, ignored);
 }
 
@@ -87,8 +118,7 @@ void check_outputs(const std::vector<std::string>& paths, const std::string& inp
 
 void OutputSet::add(const std::string& path, const Writer& write) {
   if (is_stream(path)) throw OutputError("cannot write '" + path + "': this output needs a file");
-  const bool is_new = !fs::exists(status_of(path));
-  files_.push_back({path, is_new, std::make_unique<AtomicFile>(path)});
+  files_.push_back({path, std::make_unique<AtomicFile>(path)});
   const std::string& temporary_path = files_.back().file->temporary_path();
   clean_up_in(fs::path(temporary_path).parent_path().string());
   try {
@@ -117,21 +147,25 @@ void OutputSet::add_folder(const std::string& path) {
   clean_up_in(path, true);
 }
 
+void OutputSet::commit_files() {
+  if (files_.empty()) return;
+  const FolderLock lock(fs::path(files_.front().path).parent_path().string());
+  const auto rule = force_ ? AtomicFile::IfExists::kReplace : AtomicFile::IfExists::kFail;
+  try {
+    for (const File& file : files_) file.file->commit(rule);
+  } catch (...) {
+    for (const File& file : files_) file.file->roll_back();
+    throw;
+  }
+  for (const File& file : files_) file.file->settle();
+}
+
 void OutputSet::commit(IfInterrupted rule) {
   // Streams first: they cannot be taken back, and the files need nothing but a rename any more.
   for (const Stream& stream : streams_) write_stream(stream.path, stream.content);
   if (interrupted() && rule == IfInterrupted::kDropAll) throw Interrupted();
   set_interrupt_policy(OnInterrupt::kFinishAll);
-  std::size_t num_done = 0;
-  try {
-    for (; num_done < files_.size(); ++num_done) files_[num_done].file->commit();
-  } catch (...) {
-    for (std::size_t i = 0; i <= num_done; ++i) {
-      std::error_code ignored;
-      if (files_[i].is_new) fs::remove(files_[i].path, ignored);
-    }
-    throw;
-  }
+  commit_files();
   for (const auto& folder : folders_) folder->keep();
   for (const std::string& path : outdated_) {
     std::error_code ignored;

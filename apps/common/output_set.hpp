@@ -32,6 +32,9 @@ class OutputSet {
  public:
   using Writer = std::function<void(const std::string& temporary_path)>;
 
+  /// Without `force`, a file that comes to be while the outputs are made is not replaced.
+  explicit OutputSet(bool force) : force_(force) {}
+
   /// Calls `write` with a path in the folder of `path` and with its ending. Throws OutputError.
   void add(const std::string& path, const Writer& write);
   /// `path` may also be "-" for standard output, a device or a pipe; those are written on commit.
@@ -40,7 +43,8 @@ class OutputSet {
   void add_folder(const std::string& path);
   /// A file that goes when the others have come.
   void remove(const std::string& path) { outdated_.push_back(path); }
-  /// Everything to its place. When something fails, what is new among the outputs is taken away again.
+  /// Everything to its place. When something fails, all is as it was before. Of runs that write to the same folder, one
+  /// waits for the other, so that no map gets the scale of another.
   /// Throws Interrupted by the rule, and when an interrupt ends the wait for the reader of a pipe.
   void commit(IfInterrupted rule = IfInterrupted::kDropAll);
 
@@ -59,13 +63,15 @@ class OutputSet {
   };
   struct File {
     std::string path;
-    bool is_new;
     std::unique_ptr<AtomicFile> file;
   };
   struct Stream {
     std::string path;
     std::string content;
   };
+  void commit_files();
+
+  bool force_;
   std::vector<std::unique_ptr<NewFolder>> folders_;  ///< before the files, which must be gone first
   std::vector<File> files_;
   std::vector<Stream> streams_;

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run_program.hpp"
 
-#include <cstdio>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
 #include <exception>
 #include <new>
 
@@ -13,14 +17,25 @@
 namespace shapemap::cli {
 namespace {
 
+/// A file that is opened while a standard descriptor is closed would get its number, and be written over by what is
+/// meant for a terminal. Opened the wrong way round, so that writing to a closed standard output still fails.
+void occupy_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
+    const int flags = descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY;
+    if (::open("/dev/null", flags) == -1) std::abort();  // there is nobody to tell
+  }
+}
+
 int fail(int exit_code, const char* message) {
-  std::fprintf(stderr, "%s: %s\n", kProgramName, printable(message).c_str());
+  print_line(message);
   return exit_code;
 }
 
 }  // namespace
 
 int run_program(int argc, char** argv, int (*run)(const std::vector<std::string>& typed)) {
+  occupy_standard_descriptors();
   try {
     install_signal_handlers();
     return run({argv + (argc > 0 ? 1 : 0), argv + argc});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "signals.hpp"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <pthread.h>
 #include <unistd.h>
@@ -11,6 +12,7 @@
 #include <cstring>
 #include <map>
 #include <mutex>
+#include <system_error>
 #include <thread>
 
 #include "exit_codes.hpp"
@@ -65,26 +67,33 @@ Leftovers& leftovers() {
   return *all;
 }
 
+void clean_up_when_woken(int read_end) {
+  char byte = 0;
+  if (::read(read_end, &byte, 1) != 1) return;
+  const std::lock_guard<std::mutex> lock(leftovers().mutex);
+  for (const auto& [folder, is_new] : leftovers().folders) {
+    remove_temporary_files(folder);
+    if (is_new) ::rmdir(folder.c_str());
+  }
+  leave();
+}
+
 /// A handler cannot list folders; this thread does it, and takes no signals itself.
 void start_cleaner() {
   std::array<int, 2> ends{};
-  if (::pipe(ends.data()) != 0) return;
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return;
   sigset_t all;
   sigset_t before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  std::thread([read_end = ends[0]] {
-    char byte = 0;
-    if (::read(read_end, &byte, 1) != 1) return;
-    const std::lock_guard<std::mutex> lock(leftovers().mutex);
-    for (const auto& [folder, is_new] : leftovers().folders) {
-      remove_temporary_files(folder);
-      if (is_new) ::rmdir(folder.c_str());
-    }
-    leave();
-  }).detach();
+  try {
+    std::thread(clean_up_when_woken, ends[0]).detach();
+    wake_cleaner = ends[1];
+  } catch (const std::system_error&) {  // no thread is to be had: a second interrupt leaves the files
+    ::close(ends[0]);
+    ::close(ends[1]);
+  }
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
-  wake_cleaner = ends[1];
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ std::vector<PlacedPosition> place_all(const Log& log, const std::vector<Motion>&
 }
 
 void write_outputs(const Arguments& arguments, const Log& log, const std::vector<PlacedPosition>& placed) {
-  cli::OutputSet outputs;
+  cli::OutputSet outputs(arguments.force);
   if (!arguments.map_path.empty()) {
     cli::set_interrupt_policy(cli::OnInterrupt::kExitAtOnce);  // nothing is open yet
     const GridMap map = build_grid_map(log, placed, arguments.settings.returns, arguments.settings.grid);
@@ -105,9 +105,10 @@ void print_summary(const Arguments& arguments, const Log& log, const std::vector
   for (const std::string& path : output_paths(arguments)) {
     written += (written.empty() ? "" : ", ") + (path == "-" ? "standard output" : path);
   }
-  std::fprintf(stderr, "%s: %s placed %zu of %zu positions in %.1f s, %.0f MiB; written: %s\n", cli::kProgramName,
-               enum_name(arguments.method).c_str(), placed.size(), log.positions.size(), wall_s, cli::peak_memory_mib(),
-               cli::printable(written).c_str());
+  char costs[80];
+  std::snprintf(costs, sizeof costs, " positions in %.1f s, %.0f MiB; written: ", wall_s, cli::peak_memory_mib());
+  cli::print_line(enum_name(arguments.method) + " placed " + std::to_string(placed.size()) + " of " +
+                  std::to_string(log.positions.size()) + costs + written);
 }
 
 int run(const Arguments& arguments) {

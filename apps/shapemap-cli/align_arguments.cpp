@@ -62,7 +62,6 @@ std::optional<AlignArguments> parse_align_arguments(const std::vector<std::strin
   AlignArguments arguments;
   FormatText from;
   std::string gap;
-  std::string config_path;
   const OptionTable table = align_option_table(arguments.settings);
 
   CLI::App app("Aligns pairs of positions by the robust method, each pair by itself, and writes what was found.",
@@ -72,13 +71,14 @@ std::optional<AlignArguments> parse_align_arguments(const std::vector<std::strin
   app.add_option("OTHER", arguments.other_path, "log of the query positions; without it, LOG")->option_text(" ");
   from.add(app, "--from", "format of the logs; auto: by their content; example: --from carmen");
   add_pair_options(app, arguments, gap);
-  app.add_option("--config", config_path, "options file; what is typed wins over it; example: --config options.toml")
+  app.add_option("--config", arguments.config_path,
+                 "options file; what is typed wins over it; example: --config options.toml")
       ->option_text("FILE.toml");
   app.add_flag("--dump-config", arguments.dump_config, "print the options file for what is in effect, and exit");
   const TableFlags flags(app, table);
   if (!parse(app, typed)) return std::nullopt;
 
-  if (!config_path.empty()) apply_options_file(option_table(arguments.settings), config_path);
+  if (!arguments.config_path.empty()) apply_options_file(option_table(arguments.settings), arguments.config_path);
   flags.apply();
   validate_all(arguments.settings.mapping);
   arguments.format = from.format("from");

@@ -16,7 +16,8 @@ namespace shapemap::cli {
 namespace {
 
 void check_paths(const AlignArguments& arguments) {
-  for (const std::string& input : {arguments.log_path, arguments.other_path, arguments.pairs_path}) {
+  for (const std::string& input :
+       {arguments.log_path, arguments.other_path, arguments.pairs_path, arguments.config_path}) {
     if (!input.empty()) check_outputs({arguments.out_path}, input, arguments.force);
   }
 }
@@ -44,8 +45,10 @@ std::vector<AlignedPair> align_with_progress(const Log& references, const Log& q
 void print_summary(const AlignArguments& arguments, const std::vector<AlignedPair>& aligned, double wall_s) {
   const auto num_ok =
       std::count_if(aligned.begin(), aligned.end(), [](const AlignedPair& pair) { return pair.alignment.ok(); });
-  std::fprintf(stderr, "shapemap-cli: aligned %zu pairs in %.1f s, %td of them ok; written: %s\n", aligned.size(),
-               wall_s, num_ok, printable(arguments.out_path == "-" ? "standard output" : arguments.out_path).c_str());
+  char text[120];
+  std::snprintf(text, sizeof text, "aligned %zu pairs in %.1f s, %td of them ok; written: ", aligned.size(), wall_s,
+                num_ok);
+  print_line(text + (arguments.out_path == "-" ? "standard output" : arguments.out_path));
 }
 
 }  // namespace
@@ -70,7 +73,7 @@ int run_align(const AlignArguments& arguments) {
   const std::vector<AlignedPair> aligned = align_with_progress(log, queries, pairs, arguments);
   std::string lines;
   for (const AlignedPair& pair : aligned) lines += json_line(pair, arguments.timings);
-  OutputSet outputs;
+  OutputSet outputs(arguments.force);
   outputs.add_text(arguments.out_path, lines);
   outputs.commit();
 

@@ -29,7 +29,8 @@ struct MapArguments {
   std::string trace_path;
   std::string fragments_folder;
   std::string state_path;
-  bool resume = false;  ///< from `state_path`
+  std::string config_path;  ///< has been applied to `settings`
+  bool resume = false;      ///< from `state_path`
   bool force = false;
   bool dump_config = false;  ///< print the options and do nothing else
   Verbosity verbosity = Verbosity::kNormal;
@@ -58,6 +59,7 @@ struct AlignArguments {
   int gap = 0;  ///< 0: `pairs_path` says which pairs
   std::string pairs_path;
   std::string out_path;
+  std::string config_path;  ///< has been applied to `settings`
   bool force = false;
   bool timings = false;
   bool dump_config = false;  ///< print the options and do nothing else

@@ -14,7 +14,7 @@ int run_convert(const ConvertArguments& arguments) {
   Log log = read_log(arguments.in_path, arguments.from, arguments.reading);
 
   set_interrupt_policy(OnInterrupt::kFinishStep);
-  OutputSet outputs;
+  OutputSet outputs(arguments.force);
   outputs.add(arguments.out_path, [&](const std::string& path) { write_log(log, path, arguments.to); });
   outputs.commit();
   if (const std::string lost = what_is_lost(log, arguments.to); !lost.empty()) log.warnings.push_back(lost);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <cstdio>
-
 #include "commands.hpp"
 #include "console.hpp"
 #include "exit_codes.hpp"
@@ -10,7 +8,7 @@ namespace shapemap::cli {
 
 int run_info(const InfoArguments& arguments) {
   const Log log = read_log(arguments.log_path, arguments.format, arguments.reading);
-  print_text("log         " + arguments.log_path + "\n" + log_summary_text(summarise(log)));
+  print_text("log         " + printable(arguments.log_path) + "\n" + log_summary_text(summarise(log)));
   print_lines("warning: ", log.warnings, log.warnings.size());
   return kExitOk;
 }

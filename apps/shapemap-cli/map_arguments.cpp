@@ -82,7 +82,6 @@ std::string version_text() {
 std::optional<MapArguments> parse_map_arguments(const std::vector<std::string>& typed) {
   MapArguments arguments;
   LogSourceFlags sources;
-  std::string config_path;
   bool strict_paper = false;
   bool quiet = false;
   bool verbose = false;
@@ -96,7 +95,8 @@ std::optional<MapArguments> parse_map_arguments(const std::vector<std::string>& 
   CLI::Option* quiet_flag = app.add_flag("--quiet", quiet, "print errors only");
   app.add_flag("--verbose", verbose, "print what the log holds, times, and all positions without a place")
       ->excludes(quiet_flag);
-  app.add_option("--config", config_path, "options file; what is typed wins over it; example: --config options.toml")
+  app.add_option("--config", arguments.config_path,
+                 "options file; what is typed wins over it; example: --config options.toml")
       ->option_text("FILE.toml");
   app.add_flag("--dump-config", arguments.dump_config, "print the options file for what is in effect, and exit");
   app.add_flag("--strict-paper", strict_paper,
@@ -105,7 +105,7 @@ std::optional<MapArguments> parse_map_arguments(const std::vector<std::string>& 
   if (!parse(app, typed)) return std::nullopt;
 
   if (strict_paper) make_strict_paper(arguments.settings.mapping);
-  if (!config_path.empty()) apply_options_file(table, config_path);
+  if (!arguments.config_path.empty()) apply_options_file(table, arguments.config_path);
   flags.apply();
   validate_all(arguments.settings.mapping);
   if (verbose) arguments.verbosity = Verbosity::kVerbose;

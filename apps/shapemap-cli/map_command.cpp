@@ -89,7 +89,7 @@ int run_map(const MapArguments& arguments) {
 
   set_interrupt_policy(OnInterrupt::kFinishStep);
   const Stopwatch mapping;
-  OutputSet outputs;
+  OutputSet outputs(arguments.force);
   MapRun run = map_and_trace(logs, arguments, warnings, costs, outputs);
   const MapResult& result = run.result;
   costs.map_s = mapping.seconds();

@@ -60,11 +60,19 @@ std::vector<std::string> output_paths(const MapArguments& arguments) {
   return paths;
 }
 
+std::vector<std::string> input_paths(const MapArguments& arguments) {
+  std::vector<std::string> paths;
+  for (const LogSource& log : arguments.logs) paths.push_back(log.path);
+  if (!arguments.config_path.empty()) paths.push_back(arguments.config_path);
+  return paths;
+}
+
 void check_output_paths(const MapArguments& arguments) {
   std::vector<std::string> paths = output_paths(arguments);
-  for (const LogSource& log : arguments.logs) check_outputs(paths, log.path, arguments.force);
+  const std::vector<std::string> inputs = input_paths(arguments);
+  for (const std::string& input : inputs) check_outputs(paths, input, arguments.force);
   if (arguments.fragments_folder.empty()) return;
-  for (const LogSource& log : arguments.logs) paths.push_back(log.path);
+  paths.insert(paths.end(), inputs.begin(), inputs.end());
   check_fragments_folder(arguments.fragments_folder, paths, arguments.force);
 }
 

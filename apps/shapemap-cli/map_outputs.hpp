@@ -18,6 +18,9 @@ std::vector<std::pair<const char*, std::string>> per_log_outputs(const MapArgume
 /// All files of a run with `arguments`, but for those of --fragments and --save-state.
 std::vector<std::string> output_paths(const MapArguments& arguments);
 
+/// The files that a run with `arguments` reads.
+std::vector<std::string> input_paths(const MapArguments& arguments);
+
 /// Whether all that a run with `arguments` writes could be written. Throws ConfigError and OutputError.
 void check_output_paths(const MapArguments& arguments);
 

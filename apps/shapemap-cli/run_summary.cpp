@@ -5,7 +5,6 @@
 #include <cstdio>
 
 #include "console.hpp"
-#include "run_program.hpp"
 
 namespace shapemap::cli {
 namespace {
@@ -13,8 +12,6 @@ namespace {
 std::string counted(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
-
-void print_line(const std::string& text) { std::fprintf(stderr, "%s: %s\n", kProgramName, printable(text).c_str()); }
 
 /// Whether an alignment to the positions before is behind its place; not so at the start of a log.
 bool is_chained(const PositionResult& position) {
@@ -88,7 +85,7 @@ void print_contradicting(const LogSet& logs, const MapResult& result, std::size_
   std::string text = counted(total, "scan") + (total == 1 ? " contradicts" : " contradict") +
                      " the rest of the map: " + contradicting_text(logs, found);
   if (total > found.size()) text += " and " + std::to_string(total - found.size()) + " more, see --report";
-  print_line(text);
+  print_line(text, std::string::npos);  // a long list is what was asked for
 }
 
 /// "positions 3 to 8 of a.log, 0 to 4 of b.log"

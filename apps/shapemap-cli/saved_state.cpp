@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "saved_state.hpp"
 
-#include <cstdio>
 #include <filesystem>
 
+#include "console.hpp"
 #include "map_outputs.hpp"
 
 namespace shapemap::cli {
@@ -28,7 +28,7 @@ void check_state(const MapArguments& arguments) {
   if (path == "-" || is_stream) throw OutputError("cannot write '" + path + "': the state needs a file");
   std::vector<std::string> paths = output_paths(arguments);
   paths.push_back(path);
-  for (const LogSource& log : arguments.logs) check_distinct(paths, log.path);
+  for (const std::string& input : input_paths(arguments)) check_distinct(paths, input);
   if (arguments.resume) {
     if (!fs::exists(status)) throw InputError("there is no state '" + path + "' to resume");
     return;
@@ -36,7 +36,7 @@ void check_state(const MapArguments& arguments) {
   if (fs::is_regular_file(status) && !arguments.force) {
     throw OutputError("'" + path + "' exists already; --resume goes on from it, --force begins anew");
   }
-  for (const LogSource& log : arguments.logs) check_outputs({path}, log.path, arguments.force);
+  for (const std::string& input : input_paths(arguments)) check_outputs({path}, input, arguments.force);
 }
 
 std::unique_ptr<AlignmentStoreFile> open_state(const MapArguments& arguments, const Log& log,
@@ -51,8 +51,7 @@ std::unique_ptr<AlignmentStoreFile> open_state(const MapArguments& arguments, co
 
 void print_resumed(const MapArguments& arguments, const AlignmentStoreFile* state) {
   if (!state || !arguments.resume || arguments.verbosity == Verbosity::kQuiet) return;
-  std::fprintf(stderr, "shapemap-cli: resumed '%s' with %zu alignments\n", arguments.state_path.c_str(),
-               state->num_resumed());
+  print_line("resumed '" + arguments.state_path + "' with " + std::to_string(state->num_resumed()) + " alignments");
 }
 
 }  // namespace shapemap::cli

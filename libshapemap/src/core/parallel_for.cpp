@@ -5,6 +5,8 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -26,7 +28,13 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
   const auto wanted =
       threads > 0 ? static_cast<std::size_t>(threads) : std::max<std::size_t>(1, std::thread::hardware_concurrency());
   const std::size_t num_helpers = std::min(count, wanted) - (count > 0 ? 1 : 0);
-  for (std::size_t t = 0; t < num_helpers; ++t) helpers.emplace_back(take_work);
+  try {
+    for (std::size_t t = 0; t < num_helpers; ++t) helpers.emplace_back(take_work);
+  } catch (const std::system_error&) {
+    // The system gives no more threads: those that there are do all.
+  } catch (const std::bad_alloc&) {
+    // Nor memory for one.
+  }
   take_work();
   for (std::thread& helper : helpers) helper.join();
   if (failure) std::rethrow_exception(failure);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <future>
+#include <system_error>
 
 #include "loop_choice.hpp"
 #include "loop_closer.hpp"
@@ -86,7 +87,11 @@ LoopSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& vie
   };
   StopSign::Reader reader(stop);
   std::future<LoopChoice> meanwhile;
-  if (threads != 1) meanwhile = std::async(std::launch::async, closed_chain, std::ref(reader));
+  try {
+    if (threads != 1) meanwhile = std::async(std::launch::async, closed_chain, std::ref(reader));
+  } catch (const std::system_error&) {
+    // No thread is to be had: it is done afterwards.
+  }
   LoopCloser closer(problem, clusters, options, stop);
   LoopChoice best = assembled(problem, links, hypotheses, chain.map_from_node, options, stop);
   closer.close(best);

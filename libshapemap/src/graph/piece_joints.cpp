@@ -105,7 +105,7 @@ std::vector<Way> PieceJoints::ways(std::size_t f, const std::vector<std::size_t>
     std::vector<Seen> agreeing;
     const Pose2 f_from_g = seed.f_from_b * inverse(seed.g_from_b);
     for (const Seen& joint : seen) {
-      if (agree(f_from_g, joint, seed)) agreeing.push_back(joint);
+      if (joint.joint == seed.joint || agree(f_from_g, joint, seed)) agreeing.push_back(joint);
     }
     for (const Seen& joint : agreeing) way.joints.push_back(joint.joint);
     used.insert(way.joints.begin(), way.joints.end());

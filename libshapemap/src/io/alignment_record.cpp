@@ -3,7 +3,10 @@
 
 #include <zlib.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace shapemap {
 namespace {
@@ -11,7 +14,14 @@ namespace {
 constexpr std::size_t kWordBytes = 8;
 constexpr std::size_t kKeyBytes = 3 * kWordBytes;
 constexpr std::size_t kHypothesisBytes = 26 * kWordBytes;
-constexpr std::size_t kMostBytes = std::size_t{1} << 24U;  // far more than the options allow
+constexpr std::size_t kMostHypotheses = 1000;  // far more than the options allow
+constexpr std::size_t kMostBytes = kKeyBytes + kMostHypotheses * kHypothesisBytes;
+
+// What an alignment can say: far more than any search gives, so that only damage is kept out.
+constexpr double kMostDistance_m = 1e4;
+constexpr double kMostScore = 1e6;
+constexpr double kMostWeight = 1e9;
+constexpr std::uint64_t kMostPartners = 10'000'000;
 
 void append_word(std::string& bytes, std::uint64_t value) {
   for (unsigned shift = 0; shift < 64; shift += 8) bytes.push_back(static_cast<char>((value >> shift) & 0xFFU));
@@ -52,14 +62,43 @@ void append_hypothesis(std::string& bytes, const PoseHypothesis& hypothesis) {
   append_word(bytes, static_cast<std::uint64_t>(hypothesis.fit.partners));
 }
 
-PoseHypothesis hypothesis_at(std::string_view bytes, std::size_t offset) {
+bool is_plausible(const Pose2& pose) {
+  return std::abs(pose.x_m) <= kMostDistance_m && std::abs(pose.y_m) <= kMostDistance_m &&
+         std::abs(pose.theta_rad) <= 2.0 * 2.0 * kPi;
+}
+
+/// A partner tells at most 1 of a place, and of the heading as much as its distance, squared.
+bool is_plausible(const LineFit& fit) {
+  const bool are_lengths =
+      fit.rms_m >= 0.0 && fit.rms_m <= kMostDistance_m && fit.lever_m >= 0.0 && fit.lever_m <= kMostDistance_m;
+  constexpr int kFew = 3;  // have no lever
+  const double lever_m = fit.partners < kFew ? kMostDistance_m : std::max(fit.lever_m, 0.1);
+  const Eigen::Vector3d reach(1.0, 1.0, lever_m);
+  const Eigen::Matrix3d most = 1.001 * (fit.partners + 1.0) * reach * reach.transpose();
+  return are_lengths && (fit.information.array().abs() <= most.array()).all();
+}
+
+/// A checksum tells damage from what was written, not who wrote it. False for NaN.
+bool is_plausible(const PoseHypothesis& h) {
+  const Visibility& v = h.visibility;
+  for (const double weight : {v.agree, v.crossed, v.hidden, v.unclear, v.outside, v.cross_agree, v.cross_total}) {
+    if (!(weight >= 0.0 && weight <= kMostWeight)) return false;
+  }
+  return is_plausible(h.ref_from_query) && is_plausible(h.fit.ref_from_query) && is_plausible(h.fit) &&
+         std::abs(h.score) <= kMostScore;
+}
+
+std::optional<PoseHypothesis> hypothesis_at(std::string_view bytes, std::size_t offset) {
   PoseHypothesis hypothesis;
   visit_numbers(hypothesis, [&](double& number) {
     const std::uint64_t word = word_at(bytes, offset);
     std::memcpy(&number, &word, sizeof number);
     offset += kWordBytes;
   });
-  hypothesis.fit.partners = static_cast<int>(word_at(bytes, offset));
+  const std::uint64_t partners = word_at(bytes, offset);
+  if (partners > kMostPartners) return std::nullopt;
+  hypothesis.fit.partners = static_cast<int>(partners);
+  if (!is_plausible(hypothesis)) return std::nullopt;
   return hypothesis;
 }
 
@@ -110,7 +149,9 @@ std::optional<AlignmentRecord> alignment_record(const RecordHead& head, std::str
   AlignmentRecord record;
   record.key = {word_at(body, 0), word_at(body, kWordBytes), static_cast<SearchKind>(search)};
   for (std::size_t at = kKeyBytes; at < body.size(); at += kHypothesisBytes) {
-    record.hypotheses.push_back(hypothesis_at(body, at));
+    std::optional<PoseHypothesis> hypothesis = hypothesis_at(body, at);
+    if (!hypothesis) return std::nullopt;
+    record.hypotheses.push_back(*std::move(hypothesis));
   }
   return record;
 }

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -53,6 +54,13 @@ std::string beside(const std::string& path) {
   return (full.parent_path() / name).string();
 }
 
+bool renamed(const std::string& from, const std::string& to, unsigned flags) {
+  return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), flags) == 0;
+}
+
+/// Of a file system, or a kernel, that can do nothing but rename.
+bool is_unknown_flag(int error) { return error == EINVAL || error == ENOSYS || error == EOPNOTSUPP; }
+
 std::string create_beside(const std::string& path) {
   while (true) {
     std::string name = beside(path);
@@ -85,17 +93,65 @@ AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
 }
 
 AtomicFile::~AtomicFile() {
-  if (!committed_ && temporary_path_ != path_) ::unlink(temporary_path_.c_str());
+  const bool is_temporary_left = state_ == State::kPending || state_ == State::kReplaced;
+  if (is_temporary_left && temporary_path_ != path_) ::unlink(temporary_path_.c_str());
 }
 
-void AtomicFile::commit() {
-  if (temporary_path_ != path_) {
-    flush_to_disk(temporary_path_, path_);
-    if (::rename(temporary_path_.c_str(), path_.c_str()) != 0) fail(path_, "cannot be written", errno);
-    const std::string folder = std::filesystem::path(path_).parent_path().string();
-    flush_to_disk(folder.empty() ? "." : folder, path_);  // so that the new name survives a power cut
+void AtomicFile::commit(IfExists rule) {
+  if (temporary_path_ == path_) {
+    state_ = State::kSettled;
+    return;
   }
-  committed_ = true;
+  flush_to_disk(temporary_path_, path_);
+  if (rule == IfExists::kFail) {
+    create();
+  } else {
+    replace();
+  }
+  const std::string folder = std::filesystem::path(path_).parent_path().string();
+  flush_to_disk(folder.empty() ? "." : folder, path_);  // so that the new name survives a power cut
+}
+
+void AtomicFile::replace() {
+  if (renamed(temporary_path_, path_, RENAME_EXCHANGE)) {
+    state_ = State::kReplaced;
+    return;
+  }
+  const bool is_new = errno == ENOENT;
+  if (!is_new && !is_unknown_flag(errno)) fail(path_, "cannot be written", errno);
+  if (::rename(temporary_path_.c_str(), path_.c_str()) != 0) fail(path_, "cannot be written", errno);
+  state_ = is_new ? State::kNew : State::kSettled;
+}
+
+void AtomicFile::create() {
+  bool is_done = renamed(temporary_path_, path_, RENAME_NOREPLACE);
+  if (!is_done && is_unknown_flag(errno)) {
+    // A second name is refused as well when it is taken.
+    is_done = ::link(temporary_path_.c_str(), path_.c_str()) == 0;
+    if (is_done) ::unlink(temporary_path_.c_str());
+    // Some file systems have no second names either: what is left is to look first.
+    if (!is_done && errno != EEXIST) {
+      const bool is_taken = ::access(path_.c_str(), F_OK) == 0;
+      is_done = !is_taken && std::rename(temporary_path_.c_str(), path_.c_str()) == 0;
+      if (is_taken) errno = EEXIST;
+    }
+  }
+  if (!is_done && errno == EEXIST) {
+    throw OutputError("'" + path_ + "' has been made by another run meanwhile; --force replaces it");
+  }
+  if (!is_done) fail(path_, "cannot be written", errno);
+  state_ = State::kNew;
+}
+
+void AtomicFile::roll_back() {
+  if (state_ == State::kNew) ::unlink(path_.c_str());
+  if (state_ == State::kReplaced) std::rename(temporary_path_.c_str(), path_.c_str());
+  if (state_ != State::kPending) state_ = State::kSettled;
+}
+
+void AtomicFile::settle() {
+  if (state_ == State::kReplaced) ::unlink(temporary_path_.c_str());
+  if (state_ != State::kPending) state_ = State::kSettled;
 }
 
 void write_file(const std::string& path, const std::string& content) {

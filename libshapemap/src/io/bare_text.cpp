@@ -50,6 +50,7 @@ class BareReader {
       if (!range_m) throw lines_.error("reading " + std::to_string(i + 1) + " is '" + std::string(word) + "'");
       scan.ranges_m.push_back(*range_m);
     }
+    lines_.require_plausible(scan);
     return scan;
   }
 

@@ -11,6 +11,7 @@
 #include "log_formats.hpp"
 #include "mount_pose.hpp"
 #include "shapemap/scan/beam_angles.hpp"
+#include "shapemap/scan/plausibility.hpp"
 #include "text.hpp"
 
 namespace shapemap {
@@ -215,6 +216,8 @@ class CarmenReader {
   void add(SubScan scan, const PosesAndTime& poses) {
     scan.robot_from_sensor = mount_;
     mount_ = MountPose{};
+    lines_.require_plausible(scan);
+    lines_.refuse(implausible_time(poses.timestamp_s));
     if (!joins_previous_ || log_.positions.empty()) {
       log_.positions.emplace_back();
       log_.positions.back().timestamp_s = poses.timestamp_s;

@@ -3,6 +3,7 @@
 
 #include "log_formats.hpp"
 #include "shapemap/core/errors.hpp"
+#include "shapemap/core/printable.hpp"
 #include "shapemap/scan/no_return.hpp"
 #include "shapemap/scan/timestamps.hpp"
 
@@ -13,7 +14,7 @@ bool ends_with(const std::string& text, const std::string& ending) {
   return text.size() >= ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
-std::string quoted(const std::string& label) { return "'" + label + "'"; }
+std::string quoted(const std::string& label) { return "'" + printable(label, kMostNameShown) + "'"; }
 
 }  // namespace
 

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
+#include <string>
 
 #include "shapemap/io/log_file.hpp"
 #include "shapemap/scan/joined_logs.hpp"
@@ -77,12 +79,12 @@ LogSummary summarise(const Log& log, std::size_t first, std::size_t last) {
       summary.no_returns.push_back(level);
   }
   std::vector<Count> counts;
+  std::map<std::string, std::size_t, std::less<>> index_of_label;  // a damaged log may have a label for each scan
   for (auto position = begin; position != end; ++position) {
     for (const SubScan& scan : position->sub_scans) {
-      const auto known = std::find_if(summary.sensors.begin(), summary.sensors.end(),
-                                      [&](const auto& sensor) { return sensor.label == scan.sensor_label; });
-      const auto index = static_cast<std::size_t>(known - summary.sensors.begin());
-      if (known == summary.sensors.end()) {
+      const auto [known, is_new] = index_of_label.try_emplace(scan.sensor_label, summary.sensors.size());
+      const std::size_t index = known->second;
+      if (is_new) {
         summary.sensors.push_back(first_seen(scan));
         counts.emplace_back();
       }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "nist_scan.hpp"
+#include "shapemap/scan/plausibility.hpp"
 
 namespace shapemap {
 namespace {
@@ -92,6 +93,8 @@ class NistReader {
   void read_sensor(Words& words) {
     NistHeader sensor = read_nist_sensor(words, lines_, units_);
     const std::string name = sensor.scan.sensor_label;
+    lines_.refuse(implausibility(sensor.scan));
+    lines_.refuse(implausible_count(sensors_.size(), "sensors"));
     if (!sensors_.emplace(name, std::move(sensor)).second) {
       throw lines_.error("sensor '" + name + "' is declared twice");
     }
@@ -100,12 +103,15 @@ class NistReader {
   void read_position(Words& words) {
     Position position;
     position.timestamp_s = number(words, "the timestamp");
+    lines_.refuse(implausible_time(position.timestamp_s));
+    lines_.refuse(implausible_count(log_.positions.size(), "positions"));
     const std::string_view field = words.next();
     if (field == "reference") {
       Pose2 pose;
       pose.x_m = number(words, "reference") * units_.metres_per_unit;
       pose.y_m = number(words, "reference") * units_.metres_per_unit;
       pose.theta_rad = number(words, "reference") * units_.radians_per_unit;
+      lines_.refuse(implausibility(pose));
       position.reference_pose = pose;
     } else if (!field.empty()) {
       throw lines_.error("unexpected '" + std::string(field) + "', expected 'reference' or nothing");
@@ -120,6 +126,7 @@ class NistReader {
     if (sensor == sensors_.end()) throw lines_.error("sensor '" + name + "' is not declared above");
     if (log_.positions.empty()) throw lines_.error("a scan before the first position");
     SubScan scan = read_nist_scan(words, lines_, units_, sensor->second, oddities_);
+    lines_.require_plausible(scan);
     if (choice_.takes(name, false)) log_.positions.back().sub_scans.push_back(std::move(scan));
   }
 

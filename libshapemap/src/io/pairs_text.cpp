@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/io/pair_files.hpp"
+#include "shapemap/scan/plausibility.hpp"
 #include "text.hpp"
 
 namespace shapemap {
@@ -35,6 +36,7 @@ std::vector<PositionPair> read_pairs(const std::string& path, std::size_t num_re
       const double x_m = lines.finite(words.next(), "x_m");
       const double y_m = lines.finite(words.next(), "y_m");
       pair.given_ref_from_query = Pose2{x_m, y_m, wrap_angle(lines.finite(words.next(), "theta_rad"))};
+      lines.refuse(implausibility(*pair.given_ref_from_query));
     }
     pairs.push_back(pair);
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "rawlog.hpp"
 
-#include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -9,6 +8,8 @@
 #include "log_formats.hpp"
 #include "rawlog_skeleton.hpp"
 #include "shapemap/core/errors.hpp"
+#include "shapemap/core/printable.hpp"
+#include "shapemap/scan/plausibility.hpp"
 
 namespace shapemap {
 namespace {
@@ -31,10 +32,11 @@ class RawlogReader {
     } catch (const RawlogDamage& found) {
       damage = describe(found);
     }
-    if (log_.positions.empty() && !damage.empty()) {
+    if (log_.positions.empty() && num_unusable_ == 0 && !damage.empty()) {
       throw InputError(source_.path() + ": " + damage + ", no whole scan before that");
     }
     choice_.report(source_.path(), log_);
+    if (log_.positions.empty() && num_unusable_ > 0) throw InputError(source_.path() + ": " + unusable_text());
     if (damage.empty()) finish_log(source_, log_);
     if (!damage.empty()) log_.warnings.push_back(source_.path() + ": " + damage + "; what is before that is used");
     warn_of_oddities();
@@ -90,23 +92,22 @@ class RawlogReader {
       const std::string reason = error.what();
       throw RawlogDamage{skeleton_.offset(), "unreadable scan: " + reason.substr(0, reason.find('\n'))};
     }
+    const std::uint64_t offset = skeleton_.offset();
     skeleton_.skip(object.size());
     if (!choice_.takes(read.scan.sensor_label, only_first)) return;
-    if (!is_usable(read.scan)) {
-      ++num_unusable_;
+    const std::string fault = fault_of(read);
+    if (!fault.empty()) {
+      if (num_unusable_++ == 0) first_unusable_ = fault + " (the first at offset " + std::to_string(offset) + ")";
       return;
     }
     if (position.sub_scans.empty()) position.timestamp_s = timestamp_of(read);
     position.sub_scans.push_back(std::move(read.scan));
   }
 
-  static bool is_usable(const SubScan& scan) {
-    const MountPose& mount = scan.robot_from_sensor;
-    double sum = scan.first_angle_rad + scan.angle_step_rad;
-    for (const double part : {mount.x_m, mount.y_m, mount.z_m, mount.yaw_rad, mount.pitch_rad, mount.roll_rad}) {
-      sum += part;
-    }
-    return !scan.ranges_m.empty() && std::isfinite(sum);
+  static std::string fault_of(const RawlogScan& read) {
+    if (read.scan.ranges_m.empty()) return "no beams";
+    const std::string fault = implausibility(read.scan);
+    return fault.empty() && read.timestamp_s ? implausible_time(*read.timestamp_s) : fault;
   }
 
   double timestamp_of(const RawlogScan& read) {
@@ -116,14 +117,19 @@ class RawlogReader {
   }
 
   void add(Position position) {
-    if (!position.sub_scans.empty()) log_.positions.push_back(std::move(position));
+    if (position.sub_scans.empty()) return;
+    const std::string fault = implausible_count(log_.positions.size(), "positions");
+    if (!fault.empty()) throw RawlogDamage{skeleton_.offset(), fault};
+    log_.positions.push_back(std::move(position));
+  }
+
+  std::string unusable_text() const {
+    return std::to_string(num_unusable_) + (num_unusable_ == 1 ? " scan is left out: " : " scans are left out: ") +
+           printable(first_unusable_);
   }
 
   void warn_of_oddities() {
-    if (num_unusable_ > 0) {
-      log_.warnings.push_back(source_.path() + ": " + std::to_string(num_unusable_) +
-                              " scans without beams or with angles or mounts that are no numbers are left out");
-    }
+    if (num_unusable_ > 0) log_.warnings.push_back(source_.path() + ": " + unusable_text());
     if (num_without_time_ > 0) {
       log_.warnings.push_back(source_.path() + ": " + std::to_string(num_without_time_) +
                               " positions have no timestamp; their index in seconds is taken");
@@ -136,6 +142,7 @@ class RawlogReader {
   Log log_;
   std::size_t num_entries_ = 0;
   std::size_t num_unusable_ = 0;
+  std::string first_unusable_;  ///< what is wrong with the first of them, and where it is
   std::size_t num_without_time_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "log_formats.hpp"
+#include "shapemap/scan/plausibility.hpp"
 
 namespace shapemap {
 namespace {
@@ -14,7 +15,7 @@ constexpr unsigned char kNameFlag = 0x80;  // set in the length of a class name
 constexpr unsigned char kEndMark = 0x88;   // behind each object
 constexpr std::size_t kLongestName = 120;
 constexpr std::size_t kLongestHeader = kLongestName + 2;
-constexpr std::uint32_t kMostBeams = 1'000'000;
+constexpr auto kMostBeams = static_cast<std::uint32_t>(plausible::kMostBeams);
 constexpr std::uint32_t kLargestMatrixSide = 16;
 constexpr std::size_t kLongestLabel = 1U << 16U;
 

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "shapemap/core/printable.hpp"
+#include "shapemap/scan/plausibility.hpp"
+
 namespace shapemap {
 namespace {
 
@@ -21,21 +24,6 @@ std::optional<Number> parse_whole(std::string_view word) {
                                                      : std::numeric_limits<Number>::max();
   if (end.ec != std::errc{}) return std::nullopt;
   return value;
-}
-
-/// Control characters as `\xNN`: a zero would end the message.
-std::string escaped(const std::string& text) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string result;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x20 && byte != 0x7F) {
-      result += c;
-    } else {
-      result += {'\\', 'x', kDigits[byte >> 4U], kDigits[byte & 0xFU]};
-    }
-  }
-  return result;
 }
 
 }  // namespace
@@ -67,6 +55,15 @@ std::optional<std::string_view> LineReader::next() {
   return line;
 }
 
+void LineReader::require_plausible(const SubScan& scan) {
+  refuse(implausibility(scan));
+  refuse(implausible_count(num_scans_++, "scans"));
+}
+
+void LineReader::refuse(const std::string& fault) const {
+  if (!fault.empty()) throw error(fault);
+}
+
 double LineReader::finite(std::string_view word, const char* name) const {
   const std::optional<double> value = parse_number(word);
   if (!value || !std::isfinite(*value)) {
@@ -77,7 +74,7 @@ double LineReader::finite(std::string_view word, const char* name) const {
 
 std::string LineReader::where() const { return source_.path() + ":" + std::to_string(line_number_); }
 
-InputError LineReader::error(const std::string& what) const { return InputError(where() + ": " + escaped(what)); }
+InputError LineReader::error(const std::string& what) const { return InputError(where() + ": " + printable(what)); }
 
 bool Words::separates(char c) const {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f' || c == separator_;

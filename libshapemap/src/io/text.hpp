@@ -10,6 +10,7 @@
 
 #include "byte_source.hpp"
 #include "shapemap/core/errors.hpp"
+#include "shapemap/scan/scan.hpp"
 
 /// Lines, words and numbers; the same in every locale.
 namespace shapemap {
@@ -23,12 +24,17 @@ class LineReader {
   /// For a fault in the latest line: "path:line: what".
   InputError error(const std::string& what) const;
   std::string where() const;
+  /// Throws InputError when a scan that is finished in the latest line is impossible, or one too many.
+  void require_plausible(const SubScan& scan);
+  /// Throws InputError unless `fault`, see scan/plausibility.hpp, is empty.
+  void refuse(const std::string& fault) const;
   /// The number that `word` of the latest line is. Throws InputError naming `name` when it is none, or not finite.
   double finite(std::string_view word, const char* name) const;
 
  private:
   ByteSource& source_;
   std::size_t line_number_ = 0;
+  std::size_t num_scans_ = 0;
   std::size_t pending_ = 0;  ///< bytes of the latest line, still in the window
 };
 

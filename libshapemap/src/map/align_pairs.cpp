@@ -9,6 +9,7 @@
 #include "shapemap/align/robust_align.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/core/parallel_for.hpp"
+#include "shapemap/scan/plausibility.hpp"
 
 namespace shapemap {
 namespace {
@@ -90,6 +91,13 @@ std::vector<PositionPair> pairs_with_gap(std::size_t num_positions, std::size_t 
 std::vector<AlignedPair> align_pairs(const Log& references, const Log& queries, const std::vector<PositionPair>& pairs,
                                      const MappingOptions& options, RunObserver& observer) {
   validate_all(options);
+  require_plausible(references);
+  if (&references != &queries) require_plausible(queries);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!pairs[i].given_ref_from_query) continue;
+    const std::string fault = implausibility(*pairs[i].given_ref_from_query);
+    if (!fault.empty()) throw InputError("the given pose of pair " + std::to_string(i) + ": " + fault);
+  }
   Views of_references(references);
   Views of_other_log(queries);
   Views& of_queries = &references == &queries ? of_references : of_other_log;

@@ -8,6 +8,7 @@
 #include "shapemap/core/errors.hpp"
 #include "shapemap/map/mirror_check.hpp"
 #include "shapemap/map/scan_agreement.hpp"
+#include "shapemap/scan/plausibility.hpp"
 
 namespace shapemap {
 namespace {
@@ -36,6 +37,7 @@ std::string MapResult::why_not_in_map(const PositionResult& position) const {
 MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
                   AlignmentStore* store) {
   validate_all(options);
+  require_plausible(log);
   MapResult result;
   try {
     if (options.chain.method == Method::kPaper) {

@@ -117,9 +117,11 @@ class ImageFilling {
 int RangeImage::beam_at(double bearing_rad) const {
   const double per_rad = 1.0 / step_rad;
   const double beams_in_turn = 2.0 * kPi * per_rad;
-  double beam = (bearing_rad - first_bearing_rad) * per_rad + 0.5;
-  while (beam < 0.0) beam += beams_in_turn;
-  while (beam >= beams_in_turn) beam -= beams_in_turn;
+  double from_first_rad = bearing_rad - first_bearing_rad;
+  if (std::abs(from_first_rad) > 2.0 * kPi) from_first_rad = wrap_angle(from_first_rad);
+  double beam = from_first_rad * per_rad + 0.5;  // less than a turn away: once is enough
+  if (beam < 0.0) beam += beams_in_turn;
+  if (beam >= beams_in_turn) beam -= beams_in_turn;
   const auto count = static_cast<double>(beams.size());
   if (beam < count) return static_cast<int>(beam);
   // Rounding leaves no gap in a full circle.

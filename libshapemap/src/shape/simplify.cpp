@@ -64,6 +64,7 @@ std::vector<std::size_t> simplify_polyline(const std::vector<Point2>& points, do
   Vertices vertices;
   std::vector<std::size_t> index_of_vertex;
   for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].allFinite()) continue;  // CGAL's predicates know no NaN
     const Kernel::Point_2 vertex(points[i].x(), points[i].y());
     if (!vertices.empty() && vertices.back() == vertex) continue;  // the triangulation wants distinct neighbours
     vertices.push_back(vertex);

@@ -2,9 +2,11 @@
 #include "shapemap/core/parallel_for.hpp"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <atomic>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -53,6 +55,36 @@ TEST(ParallelFor, WithOneThreadWorksInOrderOnTheCallingThread) {
     order.push_back(i);
   });
   EXPECT_EQ(order, (std::vector<std::size_t>{0, 1, 2, 3, 4}));
+}
+
+/// While it lives, no thread can be started: none has so much room for its stack.
+class NoMoreThreads {
+ public:
+  NoMoreThreads() {
+    pthread_getattr_default_np(&before_);
+    pthread_attr_t huge;
+    pthread_getattr_default_np(&huge);
+    pthread_attr_setstacksize(&huge, std::size_t{1} << 47U);
+    pthread_setattr_default_np(&huge);
+    pthread_attr_destroy(&huge);
+  }
+  ~NoMoreThreads() {
+    pthread_setattr_default_np(&before_);
+    pthread_attr_destroy(&before_);
+  }
+  NoMoreThreads(const NoMoreThreads&) = delete;
+  NoMoreThreads& operator=(const NoMoreThreads&) = delete;
+
+ private:
+  pthread_attr_t before_{};
+};
+
+TEST(ParallelFor, DoesAllByItselfWhereNoThreadIsToBeHad) {
+  const NoMoreThreads none;
+  EXPECT_THROW(std::thread([] {}).join(), std::system_error);
+  std::vector<int> done(100, 0);
+  parallel_for(done.size(), 8, [&](std::size_t i) { ++done[i]; });
+  EXPECT_EQ(done, std::vector<int>(100, 1));
 }
 
 }  // namespace

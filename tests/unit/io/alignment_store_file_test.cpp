@@ -41,8 +41,8 @@ PoseHypothesis hypothesis(double seed) {
   h.fit.ref_from_query = {1.0 / seed, std::numeric_limits<double>::denorm_min(), -seed};
   for (Eigen::Index i = 0; i < 9; ++i) h.fit.information(i / 3, i % 3) = seed / static_cast<double>(7 + i);
   h.fit.partners = 37;
-  h.fit.rms_m = std::numeric_limits<double>::quiet_NaN();
-  h.fit.lever_m = std::numeric_limits<double>::infinity();
+  h.fit.rms_m = std::numeric_limits<double>::denorm_min();
+  h.fit.lever_m = std::nextafter(seed, 10.0);
   return h;
 }
 
@@ -154,17 +154,18 @@ TEST_F(AlignmentStoreFileTest, WritesAtOnce) {
 
 TEST_F(AlignmentStoreFileTest, TakesManyThreads) {
   log_ = log_of(400);
+  const auto of = [](std::size_t i) { return hypothesis(1.0 + 0.01 * static_cast<double>(i)); };
   {
     AlignmentStoreFile state = opened(StateOpening::kCreate);
     parallel_for(400, 4, [&](std::size_t i) {
-      state.keep({i, 399 - i}, {hypothesis(static_cast<double>(i + 1))});
+      state.keep({i, 399 - i}, {of(i)});
       if (!state.find({i, 399 - i})) throw std::runtime_error("lost");
     });
   }
   AlignmentStoreFile state = opened(StateOpening::kResume);
   EXPECT_EQ(state.num_resumed(), 400U);
   for (std::size_t i = 0; i < 400; ++i) {
-    EXPECT_THAT(state.find({i, 399 - i})->front(), HasSameBitsAs(hypothesis(static_cast<double>(i + 1))));
+    EXPECT_THAT(state.find({i, 399 - i})->front(), HasSameBitsAs(of(i)));
   }
 }
 

@@ -107,5 +107,54 @@ TEST(AtomicFile, FullDiskLeavesTheOldFile) {
   ::umount(folder.path("small").c_str());
 }
 
+TEST(AtomicFile, ACommitCanBeTakenBackUntilItIsSettled) {
+  const TempFolder folder;
+  const std::string old_path = folder.write("old.txt", "old");
+  const auto committed = [&](const std::string& path) {
+    auto file = std::make_unique<AtomicFile>(path);
+    std::ofstream(file->temporary_path()) << "new";
+    file->commit();
+    EXPECT_EQ(read_file(path), "new");
+    return file;
+  };
+  for (const std::string& path : {old_path, folder.path("new.txt")}) {
+    const auto file = committed(path);
+    file->roll_back();
+    file->roll_back();
+  }
+  EXPECT_EQ(read_file(old_path), "old");
+  EXPECT_THAT(folder.names(), ElementsAre("old.txt"));
+  for (const std::string& path : {old_path, folder.path("new.txt")}) {
+    const auto file = committed(path);
+    file->settle();
+    EXPECT_EQ(folder.names().size(), path == old_path ? 1U : 2U);
+    file->roll_back();
+    EXPECT_EQ(read_file(path), "new");
+  }
+}
+
+TEST(AtomicFile, WithoutACommitThereIsNothingToTakeBack) {
+  const TempFolder folder;
+  const std::string path = folder.write("x.txt", "old");
+  AtomicFile file(path);
+  file.roll_back();
+  EXPECT_EQ(read_file(path), "old");
+}
+
+TEST(AtomicFile, LeavesWhatAnotherRunHasMadeMeanwhile) {
+  const TempFolder folder;
+  const std::string path = folder.path("x.txt");
+  AtomicFile file(path);
+  folder.write("x.txt", "of another run");
+  EXPECT_THROW(file.commit(AtomicFile::IfExists::kFail), OutputError);
+  file.roll_back();
+  EXPECT_EQ(read_file(path), "of another run");
+  std::filesystem::remove(path);
+  std::ofstream(file.temporary_path()) << "mine";
+  file.commit(AtomicFile::IfExists::kFail);
+  EXPECT_EQ(read_file(path), "mine");
+  EXPECT_THAT(folder.names(), ElementsAre("x.txt"));
+}
+
 }  // namespace
 }  // namespace shapemap

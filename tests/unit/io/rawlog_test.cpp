@@ -120,7 +120,7 @@ TEST_F(Rawlog, AScanWithoutBeamsIsLeftOut) {
   scan->resizeScan(0);
   const Log log = read(*scan, *mrpt_scan("a", 2.0));
   EXPECT_EQ(log.positions.size(), 1U);
-  EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("1 scans without beams")));
+  EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("1 scan is left out: no beams (the first at offset ")));
 }
 
 TEST_F(Rawlog, WithoutLasersSaysSo) { EXPECT_THROW(read(mrpt::obs::CActionCollection(), frame({})), InputError); }

@@ -191,5 +191,43 @@ TEST(RangeImage, OfNoBeamsHasNone) {
   EXPECT_TRUE(image_of(sub_scan).beams.empty());
 }
 
+/// What beam_at() means, by turning on until the bearing is there.
+int beam_by_turning(const RangeImage& image, double bearing_rad) {
+  const double beams_in_turn = 2.0 * kPi * (1.0 / image.step_rad);
+  double beam = (bearing_rad - image.first_bearing_rad) * (1.0 / image.step_rad) + 0.5;
+  while (beam < 0.0) beam += beams_in_turn;
+  while (beam >= beams_in_turn) beam -= beams_in_turn;
+  const auto count = static_cast<double>(image.beams.size());
+  if (beam < count) return static_cast<int>(beam);
+  return beams_in_turn - count < 1e-6 ? static_cast<int>(image.beams.size()) - 1 : -1;
+}
+
+TEST(RangeImage, BeamsAreFoundWithoutTurningOn) {
+  std::mt19937 rng(11);
+  std::uniform_real_distribution<double> bearing(-kPi, kPi);
+  for (const auto& [step_rad, num_beams] :
+       {std::pair{kDegree, 360}, {kDegree, 181}, {0.25 * kDegree, 1081}, {0.7, 9}}) {
+    for (int i = 0; i < 2000; ++i) {
+      const RangeImage image = empty_image(bearing(rng), step_rad, static_cast<std::size_t>(num_beams));
+      const double bearing_rad = i % 7 == 0 ? image.first_bearing_rad + 0.5 * step_rad * i : bearing(rng);
+      const double wrapped_rad = wrap_angle(bearing_rad);
+      ASSERT_EQ(image.beam_at(wrapped_rad), beam_by_turning(image, wrapped_rad));
+    }
+  }
+}
+
+TEST(RangeImage, EveryBearingAndEveryStepEnds) {
+  for (const double step_rad : {1e12, 1e308, 1e-300, 5e-324, 0.01}) {
+    const RangeImage image = empty_image(0.3, step_rad, 20);
+    for (const double bearing_rad : {0.0, 1e6, -1e18, 1e308, std::nan(""), HUGE_VAL}) {
+      const int beam = image.beam_at(bearing_rad);
+      EXPECT_TRUE(beam >= -1 && beam < 20) << step_rad << " " << bearing_rad;
+    }
+  }
+  const RangeImage image = empty_image(0.0, kDegree, 360);
+  EXPECT_EQ(image.beam_at(1000 * 2 * kPi + 90.2 * kDegree), 90);
+  EXPECT_EQ(image.beam_at(-1000 * 2 * kPi + 90.2 * kDegree), 90);
+}
+
 }  // namespace
 }  // namespace shapemap

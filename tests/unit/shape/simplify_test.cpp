@@ -137,5 +137,14 @@ TEST(SimplifyPolyline, ToleratesAnyScribble) {
   }
 }
 
+TEST(SimplifyPolyline, LeavesOutPointsThatAreNoPlaces) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const std::vector<Point2> points{{kNan, 0.0}, {0.0, 0.0},         {1.0, kInfinity},
+                                   {1.0, 1.0},  {-kInfinity, kNan}, {2.0, 0.0}};
+  EXPECT_EQ(simplify_polyline(points, 0.05), (std::vector<std::size_t>{1, 3, 5}));
+  EXPECT_TRUE(simplify_polyline({{kNan, kNan}, {kNan, 1.0}}, 0.05).empty());
+}
+
 }  // namespace
 }  // namespace shapemap

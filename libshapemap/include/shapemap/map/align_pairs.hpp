@@ -34,7 +34,8 @@ std::vector<PositionPair> pairs_with_gap(std::size_t num_positions, std::size_t 
 
 /// One result for each of `pairs`, in their order; `references` and `queries` may be the same log. Same input and
 /// options give the same bits, but for the seconds, for any number of threads. Throws ConfigError for bad options and
-/// for an index beyond its log, Interrupted when the observer asks to stop; never for scans that do not match.
+/// for an index beyond its log, InputError for a position that no sensor can have recorded, Interrupted when the
+/// observer asks to stop; never for scans that do not match.
 std::vector<AlignedPair> align_pairs(const Log& references, const Log& queries, const std::vector<PositionPair>& pairs,
                                      const MappingOptions& options, RunObserver& observer);
 

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "shapemap/core/errors.hpp"
+#include "shapemap/core/observer.hpp"
+#include "shapemap/io/log_file.hpp"
+#include "shapemap/map/map_log.hpp"
+
+/// What is done with logs that may hold anything.
+namespace shapemap::test {
+
+enum class Outcome { kMapped, kRefused };
+
+/// Reads the file and maps its first three positions. Whatever it holds, this ends with a result or an InputError; all
+/// else is a fault.
+inline Outcome read_and_map(const std::string& path) {
+  constexpr std::size_t kFirst = 3;
+  LogReadOptions reading;
+  reading.fov_rad = kPi;  // which bare numbers need
+  try {
+    Log log = read_log(path, LogFormat::kAuto, reading);
+    summarise(log);
+    log.positions.resize(std::min(log.positions.size(), kFirst));
+    MappingOptions options;
+    options.chain.threads = 1;
+    RunObserver observer;
+    map_log(log, options, observer);
+    return Outcome::kMapped;
+  } catch (const InputError&) {
+    return Outcome::kRefused;
+  }
+}
+
+}  // namespace shapemap::test

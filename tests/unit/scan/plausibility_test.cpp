@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/scan/plausibility.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+#include "shapemap/core/errors.hpp"
+#include "shapemap/core/observer.hpp"
+#include "shapemap/map/align_pairs.hpp"
+#include "shapemap/map/map_log.hpp"
+#include "shapemap/scan/beam_angles.hpp"
+
+namespace shapemap {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+SubScan half_circle() {
+  SubScan scan;
+  scan.ranges_m.assign(181, 2.0F);
+  scan.first_angle_rad = -kPi / 2;
+  scan.angle_step_rad = kDegree;
+  scan.max_range_m = 81.83;
+  return scan;
+}
+
+TEST(Plausibility, SaysWhatIsFoundAndWhatWasExpected) {
+  SubScan scan = half_circle();
+  EXPECT_THAT(implausibility(scan), IsEmpty());
+  scan.angle_step_rad = 1e12;
+  EXPECT_EQ(implausibility(scan), "angle_step of 1e+12 rad, expected at most a full turn");
+  scan = half_circle();
+  scan.robot_from_sensor.x_m = -3e207;
+  EXPECT_EQ(implausibility(scan), "a mount's x of -3e+207 m, expected at most 100 m from the robot's origin");
+}
+
+TEST(Plausibility, EveryNumberOfAScanIsLookedAt) {
+  const std::vector<double SubScan::*> numbers{&SubScan::first_angle_rad, &SubScan::angle_step_rad,
+                                               &SubScan::min_range_m, &SubScan::max_range_m,
+                                               &SubScan::nominal_heading_rad};
+  const std::vector<double MountPose::*> of_mount{&MountPose::x_m,     &MountPose::y_m,       &MountPose::z_m,
+                                                  &MountPose::yaw_rad, &MountPose::pitch_rad, &MountPose::roll_rad};
+  for (const double wrong : {kNan, kInfinity, -kInfinity, 1e39, -1e39, 1e308}) {
+    for (double SubScan::*number : numbers) {
+      SubScan scan = half_circle();
+      scan.*number = wrong;
+      EXPECT_THAT(implausibility(scan), HasSubstr("expected")) << wrong;
+    }
+    for (double MountPose::*number : of_mount) {
+      SubScan scan = half_circle();
+      scan.robot_from_sensor.*number = wrong;
+      EXPECT_THAT(implausibility(scan), AllOf(HasSubstr("mount"), HasSubstr("expected"))) << wrong;
+    }
+  }
+}
+
+TEST(Plausibility, WhatIsUnusualPasses) {
+  SubScan scan = half_circle();
+  scan.angle_step_rad = -2.0 * kPi / 180;  // clockwise, and all round
+  scan.first_angle_rad = 2.0 * kPi;
+  scan.robot_from_sensor = {-12.0, 3.0, 40.0, kPi, -0.1, -kPi};  // upside down on a crane
+  scan.nominal_heading_rad = 15 * 2.0 * kPi;
+  scan.max_range_m = std::numeric_limits<float>::max();
+  scan.min_range_m = -1.0;
+  EXPECT_THAT(implausibility(scan), IsEmpty());
+  scan.ranges_m.assign(1, 2.0F);  // has no step
+  scan.angle_step_rad = 0.0;
+  EXPECT_THAT(implausibility(scan), IsEmpty());
+  scan.ranges_m.clear();
+  EXPECT_THAT(implausibility(scan), IsEmpty());
+  EXPECT_THAT(implausible_time(1.7e18), IsEmpty());  // nanoseconds
+  EXPECT_THAT(implausible_time(-5.0), IsEmpty());
+  EXPECT_THAT(implausibility(Pose2{5e5, 5e6, 3.0}), IsEmpty());  // on a grid of the country
+}
+
+TEST(Plausibility, AScanGoesRoundTwiceAtMostAndItsBeamsAreApart) {
+  SubScan scan = half_circle();
+  scan.angle_step_rad = 0.1;  // 180 times
+  EXPECT_THAT(implausibility(scan), HasSubstr("18 rad, expected at most two full turns"));
+  for (const double step_rad : {0.0, 1e-9, -1e-9, 1e-308}) {
+    scan.angle_step_rad = step_rad;
+    EXPECT_THAT(implausibility(scan), HasSubstr("for a scan of 181 beams")) << step_rad;
+  }
+  EXPECT_THAT(implausibility(half_circle(), 1'000'001), HasSubstr("1000001 beams"));
+}
+
+TEST(Plausibility, BeamsWithAnglesAndTimesOfTheirOwnAreLookedAtOneByOne) {
+  SubScan scan;
+  scan.ranges_m.assign(3, 2.0F);
+  set_beam_angles(scan, {0.0, 0.1, 0.3});
+  scan.beam_times_s = {0.0F, 0.01F, 0.02F};
+  scan.intensities = {1.0F, 2.0F, 3.0F};
+  EXPECT_THAT(implausibility(scan), IsEmpty());
+  SubScan wrong = scan;
+  wrong.beam_angles_rad[1] = kNan;
+  EXPECT_THAT(implausibility(wrong), HasSubstr("a beam's angle of nan rad"));
+  wrong = scan;
+  wrong.angle_step_rad = 1e-9;  // would make 300 million bearings of three beams
+  EXPECT_THAT(implausibility(wrong), HasSubstr("at most a million steps"));
+  wrong = scan;
+  wrong.beam_times_s[2] = std::numeric_limits<float>::infinity();
+  EXPECT_THAT(implausibility(wrong), HasSubstr("a beam's time of inf s"));
+  wrong = scan;
+  wrong.start_s = 1e9;
+  EXPECT_THAT(implausibility(wrong), HasSubstr("the first beam's time of 1e+09 s"));
+  wrong = scan;
+  wrong.beam_time_step_s = kNan;
+  EXPECT_THAT(implausibility(wrong), HasSubstr("time_step of nan s"));
+  wrong = scan;
+  wrong.intensities.pop_back();
+  EXPECT_THAT(implausibility(wrong), HasSubstr("2 intensities, expected none or 3"));
+  wrong = scan;
+  wrong.beam_angles_rad.push_back(0.4);
+  EXPECT_THAT(implausibility(wrong), HasSubstr("4 beam angles, expected none or 3"));
+}
+
+TEST(Plausibility, OfAPositionTheFirstFaultIsSaid) {
+  Position position;
+  position.sub_scans = {half_circle(), half_circle()};
+  EXPECT_THAT(implausibility(position), IsEmpty());
+  position.sub_scans[1].angle_step_rad = kNan;
+  EXPECT_THAT(implausibility(position), HasSubstr("sub-scan 1: angle_step of nan rad"));
+  position.reference_pose = Pose2{kInfinity, 0.0, 0.0};
+  EXPECT_THAT(implausibility(position), HasSubstr("reference pose: x of inf m"));
+  position.timestamp_s = 1e300;
+  EXPECT_THAT(implausibility(position), HasSubstr("timestamp of 1e+300 s"));
+}
+
+/// What throws InputError says.
+template <class Work>
+std::string refusal(const Work& work) {
+  try {
+    work();
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
+TEST(Plausibility, MappingNamesThePositionOfALogThatWasMadeByHand) {
+  Log log;
+  log.positions.resize(5);
+  for (Position& position : log.positions) position.sub_scans = {half_circle()};
+  log.positions[3].sub_scans[0].first_angle_rad = kNan;
+  RunObserver observer;
+  EXPECT_THAT(refusal([&] { map_log(log, {}, observer); }), HasSubstr("position 3: first_angle of nan rad"));
+  MappingOptions paper;
+  paper.chain.method = Method::kPaper;
+  EXPECT_THAT(refusal([&] { map_log(log, paper, observer); }), HasSubstr("position 3: first_angle of nan rad"));
+  EXPECT_THAT(refusal([&] { align_pairs(log, log, {{0, 1, {}}}, {}, observer); }), HasSubstr("position 3: "));
+  log.positions.resize(3);
+  EXPECT_THAT(refusal([&] {
+                align_pairs(log, log, {{0, 1, Pose2{0.0, kNan, 0.0}}}, {}, observer);
+              }),
+              HasSubstr("the given pose of pair 0: y of nan m"));
+}
+
+TEST(Plausibility, ReadingsOfAnyKindAreNoFault) {
+  Log log;
+  log.positions.resize(2);
+  for (Position& position : log.positions) position.sub_scans = {half_circle()};
+  const std::vector<float> odd{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),   -1.0F,
+                               std::numeric_limits<float>::max(),       std::numeric_limits<float>::denorm_min(), 0.0F};
+  for (std::size_t i = 0; i < 60; ++i) log.positions[0].sub_scans[0].ranges_m[3 * i] = odd[i % odd.size()];
+  log.positions[1].sub_scans[0].ranges_m.assign(181, std::numeric_limits<float>::quiet_NaN());
+  RunObserver observer;
+  const MapResult result = map_log(log, {}, observer);
+  ASSERT_EQ(result.positions.size(), 2U);
+  EXPECT_EQ(result.positions[1].fragment, -1);
+}
+
+}  // namespace
+}  // namespace shapemap
