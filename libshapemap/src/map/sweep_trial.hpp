@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "shapemap/core/observer.hpp"
+#include "shapemap/map/deskew.hpp"
+#include "sweep_timing.hpp"
+
+namespace shapemap {
+
+/// Tries `candidates` on stretches of `runs` where the robot turns fast, each as a time that a sweep may take; the
+/// first is the likeliest. The one by which successive scans go together best, if that is no chance; else a timing with
+/// sweep_time_s 0. What was seen goes into `verdict`.
+BeamTiming best_timing(const Log& log, const std::vector<SweepRun>& runs, double period_s,
+                       const std::vector<BeamTiming>& candidates, const ReturnOptions& returns, int threads,
+                       RunObserver& observer, SweepVerdict& verdict);
+
+/// Probability that of `num` tosses of a fair coin so many or more show heads.
+double chance_of_heads(std::size_t heads, std::size_t num);
+
+}  // namespace shapemap
