@@ -143,16 +143,16 @@ class Part {
 
 }  // namespace
 
-Log straightened(const Log& log, const ReturnOptions& returns, const DeskewOptions& options, int threads,
+Log straightened(Log log, const ReturnOptions& returns, const DeskewOptions& options, int threads,
                  RunObserver& observer, std::vector<SweepVerdict>& verdicts) {
-  Log straight = log;
   verdicts.clear();
+  if (options.mode != Deskew::kOff) observer.on_stage("sweeps");
   for (const LogPart& part : parts_of(log)) {
     verdicts.emplace_back();
     if (options.mode == Deskew::kOff) continue;
-    verdicts.back() = Part(log, part, returns, options, threads, observer).straighten(straight.positions);
+    verdicts.back() = Part(log, part, returns, options, threads, observer).straighten(log.positions);
   }
-  return straight;
+  return log;
 }
 
 }  // namespace shapemap

@@ -8,6 +8,7 @@
 #include "shapemap/io/grid_map.hpp"
 #include "shapemap/io/log_file.hpp"
 #include "shapemap/io/log_selection.hpp"
+#include "shapemap/map/deskew.hpp"
 #include "shapemap/map/map_log.hpp"
 
 /// The account of a run, for people and scripts.
@@ -48,6 +49,7 @@ struct RunReport {
   const GridMapOptions& grid;
   std::vector<std::string> warnings;
   RunCosts costs;
+  std::vector<SweepVerdict> sweeps{};  ///< one for each log, if any was asked about
 };
 
 /// One JSON object; see docs/cli.md for its members. What is not a number (a pose that does not exist) is null.

@@ -62,7 +62,7 @@ struct SweepVerdict {
 /// bit for bit where there is nothing to straighten: stamps that say nothing, scans that are far apart, a robot that
 /// stands. One verdict for each log that was joined. Same input and options give the same bits for any number of
 /// threads. Throws Interrupted when the observer asks to stop.
-Log straightened(const Log& log, const ReturnOptions& returns, const DeskewOptions& options, int threads,
+Log straightened(Log log, const ReturnOptions& returns, const DeskewOptions& options, int threads,
                  RunObserver& observer, std::vector<SweepVerdict>& verdicts);
 
 }  // namespace shapemap

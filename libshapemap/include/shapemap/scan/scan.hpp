@@ -33,17 +33,8 @@ struct SubScan {
   MountPose robot_from_sensor;       ///< where the robot faces its nominal heading
   double nominal_heading_rad = 0.0;  ///< turn of the robot, or of the sensor on it, since the position's first sub-scan
   std::string sensor_label;
-  std::vector<double> beam_angles_rad;
-  double beam_time_step_s = 0.0;
-  std::vector<float> beam_times_s;
-  double start_s = 0.0;
 
-  double beam_angle_rad(std::size_t beam) const {
-    return beam_angles_rad.empty() ? first_angle_rad + static_cast<double>(beam) * angle_step_rad : beam_angles_rad[beam];
-  }
-  double beam_time_s(std::size_t beam) const {
-    return beam_times_s.empty() ? start_s + static_cast<double>(beam) * beam_time_step_s : beam_times_s[beam];
-  }
+  double beam_angle_rad(std::size_t beam) const { return first_angle_rad + static_cast<double>(beam) * angle_step_rad; }
 };
 
 /// One place where the robot stood: the sub-scans taken there make one complete scan.
