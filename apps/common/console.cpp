@@ -12,12 +12,31 @@
 namespace shapemap::cli {
 namespace {
 
+/// "360", or "340 to 380, unevenly spaced,".
+std::string beams_text(const LogSummary::Sensor& sensor) {
+  std::string text = std::to_string(sensor.fewest_beams);
+  if (sensor.most_beams != sensor.fewest_beams) text += " to " + std::to_string(sensor.most_beams);
+  return text + (sensor.has_uneven_beams ? ", unevenly spaced," : "");
+}
+
+/// What is odd about the scans of a sensor, a line each.
+std::string oddities_text(const LogSummary::Sensor& sensor) {
+  std::string all;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0) all += "  " + std::string(what) + " " + std::to_string(count) + " sub-scans\n";
+  };
+  add(sensor.num_without_readings, "no readings in");
+  add(sensor.num_without_returns, "no returns in");
+  if (sensor.is_upside_down) all += "  mount       upside down\n";
+  return all;
+}
+
 std::string sensor_text(const LogSummary::Sensor& sensor) {
   char text[320];
   std::snprintf(text, sizeof text,
-                "  sub-scans   %zu\n  beams       %zu over %.6g deg\n  returns     %.1f %%, %.2f to %.2f m\n",
-                sensor.num_sub_scans, sensor.num_beams, sensor.fov_rad / kDegree, 100.0 * sensor.return_ratio,
-                sensor.shortest_return_m, sensor.longest_return_m);
+                "  sub-scans   %zu\n  beams       %s over %.6g deg\n  returns     %.1f %%, %.2f to %.2f m\n",
+                sensor.num_sub_scans, beams_text(sensor).c_str(), sensor.fov_rad / kDegree,
+                100.0 * sensor.return_ratio, sensor.shortest_return_m, sensor.longest_return_m);
   std::string all = "sensor      " + (sensor.label.empty() ? "(without a label)" : sensor.label) + "\n" + text;
   if (sensor.max_range_m > 0.0) {
     std::snprintf(text, sizeof text, "  max. range  %.6g m\n", sensor.max_range_m);
@@ -25,7 +44,11 @@ std::string sensor_text(const LogSummary::Sensor& sensor) {
   } else {
     all += "  max. range  not in the log\n";
   }
-  return all;
+  if (sensor.sweep_s > 0.0) {
+    std::snprintf(text, sizeof text, "  sweep       %.6g s\n", sensor.sweep_s);
+    all += text;
+  }
+  return all + oddities_text(sensor);
 }
 
 /// Length of the UTF-8 character at text[at], 0 when there is none.

@@ -48,6 +48,7 @@ std::string fingerprint(const Log& log) {
     for (const SubScan& scan : position.sub_scans) {
       print.add(static_cast<std::uint64_t>(scan.ranges_m.size()));
       for (const float range_m : scan.ranges_m) print.add(range_m);
+      for (const double angle_rad : scan.beam_angles_rad) print.add(angle_rad);
       const MountPose& mount = scan.robot_from_sensor;
       for (const double number :
            {scan.first_angle_rad, scan.angle_step_rad, scan.min_range_m, scan.max_range_m, mount.x_m, mount.y_m,

@@ -9,6 +9,7 @@
 #include "carmen.hpp"
 #include "log_formats.hpp"
 #include "mount_pose.hpp"
+#include "shapemap/scan/beam_angles.hpp"
 #include "shapemap/scan/returns.hpp"
 #include "text.hpp"
 
@@ -18,6 +19,7 @@ namespace {
 constexpr const char* kHeader = "# CARMEN log written by shapemap; poses are estimates, zero where there are none\n";
 
 bool fits_flaser(const SubScan& scan) {
+  if (!scan.is_evenly_spaced()) return false;
   const std::optional<double> step_rad = flaser_step_rad(scan.ranges_m.size());
   return step_rad && std::abs(scan.angle_step_rad - *step_rad) < 1e-9 &&
          std::abs(scan.first_angle_rad - kFlaserFirstAngle_rad) < 1e-9 && mount_with_heading(scan) == MountPose{};
@@ -86,7 +88,7 @@ void write_flaser(const SubScan& scan, const Pose2& map_from_robot, double times
 
 void write_robot_laser(const SubScan& clockwise_or_not, const Pose2& map_from_robot, double timestamp_s,
                        CarmenText& line) {
-  const SubScan scan = counterclockwise(clockwise_or_not);
+  const SubScan scan = counterclockwise(on_even_beams(clockwise_or_not));
   const MountPose mount = mount_with_heading(scan);
   if (!(mount == MountPose{})) {
     line << "# shapemap mount" << mount.x_m << mount.y_m << mount.z_m << mount.yaw_rad << mount.pitch_rad

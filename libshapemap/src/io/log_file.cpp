@@ -68,13 +68,27 @@ std::string what_is_lost(const Log& log, LogFormat format) {
   if (format == LogFormat::kNist) return "";
   bool headings = false;
   bool references = false;
+  bool uneven = false;
+  bool timed = false;
+  bool intense = false;
   for (const Position& position : log.positions) {
     references = references || position.reference_pose.has_value();
-    for (const SubScan& scan : position.sub_scans) headings = headings || scan.nominal_heading_rad != 0.0;
+    for (const SubScan& scan : position.sub_scans) {
+      headings = headings || scan.nominal_heading_rad != 0.0;
+      uneven = uneven || !scan.is_evenly_spaced();
+      timed = timed || scan.start_s != 0.0 || scan.beam_time_step_s > 0.0 || !scan.beam_times_s.empty();
+      intense = intense || !scan.intensities.empty();
+    }
   }
   std::string lost;
-  if (headings) lost = "nominal headings become part of the mounts of the lasers";
-  if (references) lost += std::string(lost.empty() ? "" : ", ") + "reference poses are left out";
+  const auto lose = [&](bool is_lost, const char* what) {
+    if (is_lost) lost += std::string(lost.empty() ? "" : ", ") + what;
+  };
+  lose(headings, "nominal headings become part of the mounts of the lasers");
+  lose(references, "reference poses are left out");
+  lose(uneven, "readings go to the nearest of evenly spaced beams");
+  lose(timed, "times of beams are left out");
+  lose(intense, "intensities are left out");
   return lost.empty() ? "" : "a " + enum_name(format) + " log cannot hold all: " + lost;
 }
 

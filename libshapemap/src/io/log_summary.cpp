@@ -17,14 +17,34 @@ struct Count {
 LogSummary::Sensor first_seen(const SubScan& scan) {
   LogSummary::Sensor sensor;
   sensor.label = scan.sensor_label;
-  sensor.num_beams = scan.ranges_m.size();
-  if (sensor.num_beams > 0) sensor.fov_rad = std::abs(scan.angle_step_rad) * static_cast<double>(sensor.num_beams - 1);
   sensor.max_range_m = scan.max_range_m;
+  sensor.is_upside_down = is_upside_down(scan.robot_from_sensor);
   return sensor;
+}
+
+double fov_rad(const SubScan& scan) {
+  if (scan.is_evenly_spaced()) return std::abs(scan.angle_step_rad) * static_cast<double>(scan.ranges_m.size() - 1);
+  const auto [lowest, highest] = std::minmax_element(scan.beam_angles_rad.begin(), scan.beam_angles_rad.end());
+  return *highest - *lowest;
+}
+
+void add_beams(const SubScan& scan, LogSummary::Sensor& sensor) {
+  const std::size_t num_beams = scan.ranges_m.size();
+  if (num_beams == 0) {
+    ++sensor.num_without_readings;
+    return;
+  }
+  sensor.fewest_beams = sensor.most_beams == 0 ? num_beams : std::min(sensor.fewest_beams, num_beams);
+  sensor.most_beams = std::max(sensor.most_beams, num_beams);
+  sensor.has_uneven_beams = sensor.has_uneven_beams || !scan.is_evenly_spaced();
+  sensor.fov_rad = std::max(sensor.fov_rad, fov_rad(scan));
+  sensor.sweep_s = std::max(sensor.sweep_s, scan.beam_time_s(num_beams - 1) - scan.beam_time_s(0));
 }
 
 void add(const SubScan& scan, LogSummary::Sensor& sensor, Count& count) {
   ++sensor.num_sub_scans;
+  add_beams(scan, sensor);
+  const std::size_t num_returns_before = count.num_returns;
   const RangeLimits limits = range_limits(scan, ReturnOptions{});
   for (const float range_m : scan.ranges_m) {
     ++count.num_readings;
@@ -34,6 +54,7 @@ void add(const SubScan& scan, LogSummary::Sensor& sensor, Count& count) {
     sensor.longest_return_m = std::max(sensor.longest_return_m, hit_m);
     ++count.num_returns;
   }
+  if (!scan.ranges_m.empty() && count.num_returns == num_returns_before) ++sensor.num_without_returns;
 }
 
 }  // namespace

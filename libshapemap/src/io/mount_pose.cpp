@@ -16,7 +16,7 @@ MountPose mount_with_heading(const SubScan& scan) {
 }
 
 SubScan counterclockwise(SubScan scan) {
-  if (scan.angle_step_rad >= 0.0 || scan.ranges_m.empty()) return scan;
+  if (scan.angle_step_rad >= 0.0 || scan.ranges_m.empty() || !scan.is_evenly_spaced()) return scan;
   scan.first_angle_rad = scan.beam_angle_rad(scan.ranges_m.size() - 1);
   scan.angle_step_rad = -scan.angle_step_rad;
   std::reverse(scan.ranges_m.begin(), scan.ranges_m.end());

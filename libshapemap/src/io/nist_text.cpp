@@ -1,28 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "nist_text.hpp"
 
-#include <cmath>
 #include <map>
 #include <utility>
 
+#include "nist_scan.hpp"
+
 namespace shapemap {
 namespace {
-
-/// What a `sensor` line declares: a sub-scan without readings.
-struct Sensor {
-  SubScan prototype;
-  std::size_t num_beams = 0;
-};
-
-double finite_number(Words& words, const LineReader& lines, const std::string& what) {
-  const std::string_view word = words.next();
-  if (word.empty()) throw lines.error("too few values: " + what + " is missing");
-  const std::optional<double> value = parse_number(word);
-  if (!value || !std::isfinite(*value)) {
-    throw lines.error(what + " is '" + std::string(word) + "', expected a number");
-  }
-  return *value;
-}
 
 void expect_end(Words& words, const LineReader& lines) {
   const std::string_view word = words.next();
@@ -46,6 +31,7 @@ class NistReader {
     }
     drop_empty_positions();
     choice_.report(source_.path(), log_);
+    warn_of_oddities();
     finish_log(source_, log_);
     return std::move(log_);
   }
@@ -65,8 +51,9 @@ class NistReader {
       throw lines_.error("'" + std::string(keyword) + "' where 'shapemap-scans 1' should be");
     }
     const std::string_view version = words.next();
-    if (parse_count(version) != kNistVersion) {
-      throw lines_.error("version '" + std::string(version) + "' of shapemap-scans cannot be read, expected 1");
+    const std::optional<long long> number = parse_count(version);
+    if (!number || *number < 1 || *number > kNistVersion) {
+      throw lines_.error("version '" + std::string(version) + "' of shapemap-scans cannot be read, expected 1 or 2");
     }
     expect_end(words, lines_);
     has_header_ = true;
@@ -79,75 +66,45 @@ class NistReader {
     const std::string_view length = words.next();
     const std::string_view angle = words.next();
     if (length == "m")
-      metres_per_unit_ = 1.0;
+      units_.metres_per_unit = 1.0;
     else if (length == "cm")
-      metres_per_unit_ = 0.01;
+      units_.metres_per_unit = 0.01;
     else if (length == "mm")
-      metres_per_unit_ = 0.001;
+      units_.metres_per_unit = 0.001;
     else
       throw lines_.error("unit of length is '" + std::string(length) + "', expected m, cm or mm");
     if (angle == "deg")
-      radians_per_unit_ = kDegree;
+      units_.radians_per_unit = kDegree;
     else if (angle == "rad")
-      radians_per_unit_ = 1.0;
+      units_.radians_per_unit = 1.0;
     else
       throw lines_.error("unit of angle is '" + std::string(angle) + "', expected deg or rad");
     expect_end(words, lines_);
   }
 
-  double length_m(Words& words, const char* what) { return finite_number(words, lines_, what) * metres_per_unit_; }
-  double angle_rad(Words& words, const char* what) { return finite_number(words, lines_, what) * radians_per_unit_; }
-
-  void read_sensor(Words& words) {
-    const std::string name(words.next());
-    if (name.empty()) throw lines_.error("too few values: the sensor's name is missing");
-    Sensor sensor;
-    sensor.prototype.sensor_label = name;
-    for (std::string_view field = words.next(); !field.empty(); field = words.next()) {
-      read_sensor_field(field, words, sensor);
-    }
-    if (sensor.num_beams == 0) throw lines_.error("sensor '" + name + "' has no 'beams'");
-    if (sensor.prototype.angle_step_rad == 0.0 && sensor.num_beams > 1) {
-      throw lines_.error("sensor '" + name + "' has no 'angle_step', or one of 0");
-    }
-    if (!sensors_.emplace(name, sensor).second) throw lines_.error("sensor '" + name + "' is declared twice");
+  double number(Words& words, const char* what) {
+    const std::string_view word = words.next();
+    if (word.empty()) throw lines_.error(std::string("too few values: ") + what + " is missing");
+    return lines_.finite(word, what);
   }
 
-  void read_sensor_field(std::string_view field, Words& words, Sensor& sensor) {
-    SubScan& scan = sensor.prototype;
-    if (field == "beams") {
-      const std::string_view word = words.next();
-      const std::optional<long long> count = parse_count(word);
-      if (!count || *count < 1) throw lines_.error("beams is '" + std::string(word) + "', expected 1 or more");
-      sensor.num_beams = static_cast<std::size_t>(*count);
-    } else if (field == "first_angle") {
-      scan.first_angle_rad = angle_rad(words, "first_angle");
-    } else if (field == "angle_step") {
-      scan.angle_step_rad = angle_rad(words, "angle_step");
-    } else if (field == "max_range") {
-      scan.max_range_m = length_m(words, "max_range");
-    } else if (field == "min_range") {
-      scan.min_range_m = length_m(words, "min_range");
-    } else if (field == "mount") {
-      MountPose& mount = scan.robot_from_sensor;
-      for (double* value : {&mount.x_m, &mount.y_m, &mount.z_m}) *value = length_m(words, "mount");
-      for (double* value : {&mount.yaw_rad, &mount.pitch_rad, &mount.roll_rad}) *value = angle_rad(words, "mount");
-    } else {
-      throw lines_.error("'" + std::string(field) +
-                         "' is no field of a sensor; expected beams, first_angle, angle_step, max_range, min_range or "
-                         "mount");
+  void read_sensor(Words& words) {
+    NistHeader sensor = read_nist_sensor(words, lines_, units_);
+    const std::string name = sensor.scan.sensor_label;
+    if (!sensors_.emplace(name, std::move(sensor)).second) {
+      throw lines_.error("sensor '" + name + "' is declared twice");
     }
   }
 
   void read_position(Words& words) {
     Position position;
-    position.timestamp_s = finite_number(words, lines_, "the timestamp");
+    position.timestamp_s = number(words, "the timestamp");
     const std::string_view field = words.next();
     if (field == "reference") {
       Pose2 pose;
-      pose.x_m = length_m(words, "reference");
-      pose.y_m = length_m(words, "reference");
-      pose.theta_rad = angle_rad(words, "reference");
+      pose.x_m = number(words, "reference") * units_.metres_per_unit;
+      pose.y_m = number(words, "reference") * units_.metres_per_unit;
+      pose.theta_rad = number(words, "reference") * units_.radians_per_unit;
       position.reference_pose = pose;
     } else if (!field.empty()) {
       throw lines_.error("unexpected '" + std::string(field) + "', expected 'reference' or nothing");
@@ -161,28 +118,16 @@ class NistReader {
     const auto sensor = sensors_.find(name);
     if (sensor == sensors_.end()) throw lines_.error("sensor '" + name + "' is not declared above");
     if (log_.positions.empty()) throw lines_.error("a scan before the first position");
-    if (words.next() != "heading") throw lines_.error("expected 'heading' after the sensor's name");
-    SubScan scan = sensor->second.prototype;
-    scan.nominal_heading_rad = angle_rad(words, "heading");
-    if (words.next() != "ranges") throw lines_.error("expected 'ranges' after the heading");
-    read_ranges(words, sensor->second.num_beams, scan);
+    SubScan scan = read_nist_scan(words, lines_, units_, sensor->second, oddities_);
     if (choice_.takes(name, false)) log_.positions.back().sub_scans.push_back(std::move(scan));
   }
 
-  void read_ranges(Words& words, std::size_t num_beams, SubScan& scan) {
-    const std::size_t num_values = words.count_left();
-    if (num_values != num_beams) {
-      throw lines_.error((num_values < num_beams ? "too few values: " : "too many values: ") +
-                         std::to_string(num_values) + " readings, but sensor '" + scan.sensor_label + "' has " +
-                         std::to_string(num_beams) + " beams");
-    }
-    scan.ranges_m.reserve(num_beams);
-    for (std::size_t i = 0; i < num_beams; ++i) {
-      const std::string_view word = words.next();
-      const std::optional<float> range_m = parse_range(word, metres_per_unit_);
-      if (!range_m) throw lines_.error("reading " + std::to_string(i + 1) + " is '" + std::string(word) + "'");
-      scan.ranges_m.push_back(*range_m);
-    }
+  void warn_of_oddities() {
+    const auto warn = [&](std::size_t count, const char* what) {
+      if (count > 0) log_.warnings.push_back(source_.path() + ": " + std::to_string(count) + " scans " + what);
+    };
+    warn(oddities_.num_by_step, "have an angle_step and a last_angle that contradict each other; the step is used");
+    warn(oddities_.num_by_limits, "have an angle_step that cannot be; first and last angle are used");
   }
 
   /// A position that was announced but has no scan, be it that its laser was not asked for or that the file ends.
@@ -199,9 +144,9 @@ class NistReader {
   LaserChoice choice_;
   Log log_;
   bool has_header_ = false;
-  double metres_per_unit_ = 1.0;
-  double radians_per_unit_ = kDegree;
-  std::map<std::string, Sensor, std::less<>> sensors_;
+  NistUnits units_;
+  std::map<std::string, NistHeader, std::less<>> sensors_;
+  NistOddities oddities_;
 };
 
 bool begins_with_number(ByteSource& source) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "log_formats.hpp"
@@ -11,55 +13,80 @@
 namespace shapemap {
 namespace {
 
-/// One `sensor` statement.
-struct Sensor {
-  std::string name;
-  SubScan prototype;  ///< without readings
-  std::size_t num_beams = 0;
-
-  bool made(const SubScan& scan) const {
-    return num_beams == scan.ranges_m.size() && prototype.sensor_label == scan.sensor_label &&
-           prototype.first_angle_rad == scan.first_angle_rad && prototype.angle_step_rad == scan.angle_step_rad &&
-           prototype.min_range_m == scan.min_range_m && prototype.max_range_m == scan.max_range_m &&
-           prototype.robot_from_sensor == scan.robot_from_sensor;
-  }
-};
-
-void append(std::string& text, const char* field, double value) {
-  text += ' ';
-  text += field;
-  text += ' ';
-  append_number(text, value);
-}
-
 void append(std::string& text, double value) {
   text += ' ';
   append_number(text, value);
 }
 
-/// The lasers of a log as the format wants them: one name per geometry, without blanks and remarks.
+void append(std::string& text, const char* field, double value) {
+  text += ' ';
+  text += field;
+  append(text, value);
+}
+
+/// One `sensor` statement: what most of its scans have in common. A scan says itself what is different.
+struct Sensor {
+  std::string name;
+  SubScan usual;  ///< the first scan, without readings
+  std::size_t num_beams = 0;
+  bool has_any_number = false;
+
+  bool made(const SubScan& scan) const {
+    return usual.sensor_label == scan.sensor_label && usual.robot_from_sensor == scan.robot_from_sensor;
+  }
+};
+
+/// The fields of a sensor that a scan does not share with `usual`; of the sensor itself, all that say something.
+std::string header_text(const SubScan& scan, const SubScan& usual) {
+  std::string text;
+  if (scan.is_evenly_spaced() && scan.first_angle_rad != usual.first_angle_rad) {
+    append(text, "first_angle", scan.first_angle_rad / kDegree);
+  }
+  if (scan.is_evenly_spaced() && scan.angle_step_rad != usual.angle_step_rad) {
+    append(text, "angle_step", scan.angle_step_rad / kDegree);
+  }
+  if (scan.max_range_m != usual.max_range_m) append(text, "max_range", scan.max_range_m);
+  if (scan.min_range_m != usual.min_range_m) append(text, "min_range", scan.min_range_m);
+  if (scan.beam_time_step_s != usual.beam_time_step_s) append(text, "time_step", scan.beam_time_step_s);
+  return text;
+}
+
+/// The lasers of a log as the format wants them: one name each, without blanks and remarks.
 class Sensors {
  public:
   explicit Sensors(const Log& log) {
     for (const Position& position : log.positions) {
       for (const SubScan& scan : position.sub_scans) {
-        if (find(scan) == nullptr) declare(scan);
+        const auto known =
+            std::find_if(sensors_.begin(), sensors_.end(), [&](const Sensor& sensor) { return sensor.made(scan); });
+        if (known == sensors_.end()) {
+          declare(scan);
+        } else if (known->num_beams != scan.ranges_m.size()) {
+          known->has_any_number = true;
+        }
       }
     }
   }
 
-  const std::string& name_of(const SubScan& scan) const { return find(scan)->name; }
+  const Sensor& of(const SubScan& scan) const {
+    return *std::find_if(sensors_.begin(), sensors_.end(), [&](const Sensor& sensor) { return sensor.made(scan); });
+  }
+
+  bool have_any_number() const {
+    return std::any_of(sensors_.begin(), sensors_.end(), [](const Sensor& sensor) { return sensor.has_any_number; });
+  }
 
   std::string text() const {
     std::string text;
     for (const Sensor& sensor : sensors_) {
-      const SubScan& scan = sensor.prototype;
-      text += "sensor " + sensor.name + " beams " + std::to_string(sensor.num_beams);
-      append(text, "first_angle", scan.first_angle_rad / kDegree);
-      append(text, "angle_step", scan.angle_step_rad / kDegree);
-      if (scan.max_range_m > 0.0) append(text, "max_range", scan.max_range_m);
-      if (scan.min_range_m > 0.0) append(text, "min_range", scan.min_range_m);
-      append_mount(text, scan.robot_from_sensor);
+      const bool any = sensor.has_any_number || sensor.num_beams == 0;
+      text += "sensor " + sensor.name + " beams " + (any ? "any" : std::to_string(sensor.num_beams));
+      append(text, "first_angle", sensor.usual.first_angle_rad / kDegree);
+      append(text, "angle_step", sensor.usual.angle_step_rad / kDegree);
+      SubScan silent = sensor.usual;
+      silent.max_range_m = silent.min_range_m = silent.beam_time_step_s = 0.0;
+      text += header_text(sensor.usual, silent);
+      append_mount(text, sensor.usual.robot_from_sensor);
       text += '\n';
     }
     return text;
@@ -73,19 +100,16 @@ class Sensors {
     for (const double angle_rad : {mount.yaw_rad, mount.pitch_rad, mount.roll_rad}) append(text, angle_rad / kDegree);
   }
 
-  const Sensor* find(const SubScan& scan) const {
-    for (const Sensor& sensor : sensors_) {
-      if (sensor.made(scan)) return &sensor;
-    }
-    return nullptr;
-  }
-
   void declare(const SubScan& scan) {
     Sensor sensor;
     sensor.name = free_name(scan.sensor_label);
     sensor.num_beams = scan.ranges_m.size();
-    sensor.prototype = scan;
-    sensor.prototype.ranges_m.clear();
+    sensor.has_any_number = scan.ranges_m.empty();
+    sensor.usual = scan;
+    for (auto* readings : {&sensor.usual.ranges_m, &sensor.usual.beam_times_s, &sensor.usual.intensities}) {
+      readings->clear();
+    }
+    sensor.usual.beam_angles_rad.clear();
     sensors_.push_back(std::move(sensor));
   }
 
@@ -103,9 +127,45 @@ class Sensors {
   std::set<std::string> names_;
 };
 
-void append_scan(std::string& text, const SubScan& scan, const std::string& sensor) {
-  text += "scan " + sensor;
+/// Whether `scan` has something that version 1 of the format cannot say.
+bool needs_version_2(const SubScan& scan, const Sensor& sensor) {
+  return !scan.is_evenly_spaced() || scan.start_s != 0.0 || scan.beam_time_step_s > 0.0 || !scan.beam_times_s.empty() ||
+         !scan.intensities.empty() || !header_text(scan, sensor.usual).empty();
+}
+
+int version_for(const Log& log, const Sensors& sensors) {
+  if (sensors.have_any_number()) return 2;
+  for (const Position& position : log.positions) {
+    for (const SubScan& scan : position.sub_scans) {
+      if (needs_version_2(scan, sensors.of(scan))) return 2;
+    }
+  }
+  return 1;
+}
+
+template <class Number>
+void append_list(std::string& text, const char* name, const std::vector<Number>& values) {
+  if (values.empty()) return;
+  text += ' ';
+  text += name;
+  for (const Number value : values) {
+    text += ' ';
+    append_number(text, value);
+  }
+}
+
+std::vector<double> in_degrees(std::vector<double> angles_rad) {
+  for (double& angle : angles_rad) angle /= kDegree;
+  return angles_rad;
+}
+
+void append_scan(std::string& text, const SubScan& scan, const Sensor& sensor) {
+  text += "scan " + sensor.name;
   append(text, "heading", scan.nominal_heading_rad / kDegree);
+  if (scan.start_s != 0.0) append(text, "time", scan.start_s);
+  text += header_text(scan, sensor.usual);
+  append_list(text, "angles", in_degrees(scan.beam_angles_rad));
+  append_list(text, "times", scan.beam_times_s);
   text += " ranges";
   for (const float range_m : scan.ranges_m) {
     text += ' ';
@@ -115,6 +175,7 @@ void append_scan(std::string& text, const SubScan& scan, const std::string& sens
       text += '-';
     }
   }
+  append_list(text, "intensities", scan.intensities);
   text += '\n';
 }
 
@@ -122,7 +183,8 @@ void append_scan(std::string& text, const SubScan& scan, const std::string& sens
 
 void write_nist(const Log& log, ByteSink& sink) {
   const Sensors sensors(log);
-  sink.write("shapemap-scans 1\nunits m deg\n" + sensors.text());
+  sink.write(std::string(kNistName) + " " + std::to_string(version_for(log, sensors)) + "\nunits m deg\n" +
+             sensors.text());
   for (const Position& position : log.positions) {
     std::string text = "position";
     append(text, position.timestamp_s);
@@ -132,7 +194,7 @@ void write_nist(const Log& log, ByteSink& sink) {
       append(text, position.reference_pose->theta_rad / kDegree);
     }
     text += '\n';
-    for (const SubScan& scan : position.sub_scans) append_scan(text, scan, sensors.name_of(scan));
+    for (const SubScan& scan : position.sub_scans) append_scan(text, scan, sensors.of(scan));
     sink.write(text);
   }
 }

@@ -17,6 +17,7 @@
 
 #include "mount_pose.hpp"
 #include "rawlog.hpp"
+#include "shapemap/scan/beam_angles.hpp"
 #include "shapemap/scan/returns.hpp"
 
 namespace shapemap {
@@ -40,7 +41,8 @@ MountPose mount_from_mrpt(const mrpt::poses::CPose3D& pose) {
 mrpt::Clock::time_point mrpt_time(double timestamp_s) { return mrpt::Clock::fromDouble(timestamp_s); }
 
 /// MRPT's beams lie symmetrically around the sensor's x axis: the middle of ours is turned there.
-CObservation2DRangeScan::Ptr scan_to_mrpt(const SubScan& scan, double timestamp_s) {
+CObservation2DRangeScan::Ptr scan_to_mrpt(const SubScan& even_or_not, double timestamp_s) {
+  const SubScan scan = on_even_beams(even_or_not);
   const std::size_t num_beams = scan.ranges_m.size();
   const double span_rad = scan.angle_step_rad * (static_cast<double>(num_beams) - 1.0);
   const double middle_rad = scan.first_angle_rad + span_rad / 2;

@@ -15,6 +15,13 @@ Eigen::Matrix3d rotation_of(const MountPose& mount) {
       .toRotationMatrix();
 }
 
+/// Uneven beams come in any order. Equal angles keep the order of the readings.
+void sort_by_angle(const SubScan& sub_scan, std::vector<Return>& returns) {
+  std::stable_sort(returns.begin(), returns.end(), [&](const Return& a, const Return& b) {
+    return sub_scan.beam_angles_rad[a.beam] < sub_scan.beam_angles_rad[b.beam];
+  });
+}
+
 }  // namespace
 
 bool is_upside_down(const MountPose& robot_from_sensor) { return rotation_of(robot_from_sensor)(2, 2) < 0.0; }
@@ -51,7 +58,9 @@ std::vector<Return> returns_in_robot(const SubScan& sub_scan, const ReturnOption
     const Point2 p_at_heading = mount_m + static_cast<double>(range_m) * direction.head<2>();
     returns.push_back({rotate(p_at_heading, sub_scan.nominal_heading_rad), beam, range_m});
   }
-  const bool clockwise_from_above = (sub_scan.angle_step_rad < 0.0) != (up < 0.0);
+  if (!sub_scan.is_evenly_spaced()) sort_by_angle(sub_scan, returns);
+  const bool sorted_clockwise = sub_scan.is_evenly_spaced() && sub_scan.angle_step_rad < 0.0;
+  const bool clockwise_from_above = sorted_clockwise != (up < 0.0);
   if (clockwise_from_above) std::reverse(returns.begin(), returns.end());
   return returns;
 }

@@ -15,11 +15,44 @@ constexpr double kOnSegment_m = 0.10;
 /// Beams that graze a surface leave a footprint of at most this many times their width.
 constexpr double kLongestFootprint = 10.0;
 
-double first_bearing_rad(const SubScan& sub_scan) {
+/// The bearings of the beams, seen from above: from `first_rad` on, counterclockwise.
+struct Bearings {
+  double first_rad = 0.0;
+  double step_rad = 0.0;
+  std::size_t count = 0;
+};
+
+Bearings bearings_of_even_beams(const SubScan& sub_scan, bool upside_down) {
   const double first_rad = sub_scan.beam_angle_rad(0);
   const double last_rad = sub_scan.beam_angle_rad(sub_scan.ranges_m.size() - 1);
-  const bool upside_down = is_upside_down(sub_scan.robot_from_sensor);  // its angles run clockwise, seen from above
-  return wrap_angle(upside_down ? std::min(-first_rad, -last_rad) : std::min(first_rad, last_rad));
+  const double lowest_rad = upside_down ? std::min(-first_rad, -last_rad) : std::min(first_rad, last_rad);
+  return {wrap_angle(lowest_rad), std::abs(sub_scan.angle_step_rad), sub_scan.ranges_m.size()};
+}
+
+/// As many bearings, one typical step apart, as cover all beams; at most a full turn of them.
+Bearings bearings_of_uneven_beams(const SubScan& sub_scan, bool upside_down) {
+  const auto [lowest, highest] =
+      std::minmax_element(sub_scan.beam_angles_rad.begin(), sub_scan.beam_angles_rad.end());
+  const double span_rad = *highest - *lowest;
+  const double step_rad = std::abs(sub_scan.angle_step_rad);
+  if (!(step_rad > 0.0)) return {};
+  const double in_turn = std::max(1.0, std::round(2.0 * kPi / step_rad));
+  Bearings bearings;
+  bearings.first_rad = wrap_angle(upside_down ? -*highest : *lowest);
+  bearings.step_rad = step_rad;
+  bearings.count = static_cast<std::size_t>(std::min(in_turn, std::round(span_rad / step_rad) + 1.0));
+  if (span_rad + step_rad > 2.0 * kPi - 0.5 * step_rad) {
+    bearings.step_rad = 2.0 * kPi / in_turn;
+    bearings.count = static_cast<std::size_t>(in_turn);
+  }
+  return bearings;
+}
+
+/// Both sensors' angles run clockwise, seen from above, where the sensor is upside down.
+Bearings bearings_of(const SubScan& sub_scan) {
+  const bool upside_down = is_upside_down(sub_scan.robot_from_sensor);
+  return sub_scan.is_evenly_spaced() ? bearings_of_even_beams(sub_scan, upside_down)
+                                     : bearings_of_uneven_beams(sub_scan, upside_down);
 }
 
 Point2 normal_at(const SubScanShape& shape, std::size_t point, const Point2& to_sensor) {
@@ -30,6 +63,55 @@ Point2 normal_at(const SubScanShape& shape, std::size_t point, const Point2& to_
   const Point2 along = segment.direction();
   return {-along.y(), along.x()};  // counterclockwise scans have the sensor to their left
 }
+
+/// Puts hits into the beams of an image. Even beams have at most one hit each. Where uneven beams meet in one bearing,
+/// the hit nearest to its middle stays; a bearing that none falls into takes a hit that is less than a step away.
+class ImageFilling {
+ public:
+  ImageFilling(const SubScan& sub_scan, const SubScanShape& shape, const Pose2& robot_from_sensor, RangeImage& image)
+      : shape_(shape), robot_from_sensor_(robot_from_sensor), image_(image) {
+    if (!sub_scan.is_evenly_spaced()) steps_off_.assign(image.beams.size(), kReach_steps);
+  }
+
+  void add(std::size_t point) {
+    const Point2 in_sensor_m = image_.sensor_from_robot * shape_.scan_points[point].p_m;
+    const double bearing_rad = std::atan2(in_sensor_m.y(), in_sensor_m.x());
+    const int middle = image_.beam_at(bearing_rad);
+    if (steps_off_.empty()) {
+      if (middle >= 0) set(point, in_sensor_m, static_cast<std::size_t>(middle));
+      return;
+    }
+    for (const double aside : {-1.0, 0.0, 1.0}) {
+      const int k = aside == 0.0 ? middle : image_.beam_at(bearing_rad + aside * image_.step_rad);
+      if (k < 0) continue;
+      const auto beam = static_cast<std::size_t>(k);
+      const double middle_rad = image_.first_bearing_rad + static_cast<double>(k) * image_.step_rad;
+      const double steps = angle_between(bearing_rad, middle_rad) / image_.step_rad;
+      if (steps >= steps_off_[beam]) continue;
+      steps_off_[beam] = steps;
+      set(point, in_sensor_m, beam);
+    }
+  }
+
+ private:
+  static constexpr double kReach_steps = 0.75;
+
+  void set(std::size_t point, const Point2& in_sensor_m, std::size_t index) {
+    const Point2& hit_m = shape_.scan_points[point].p_m;
+    RangeImage::Beam& beam = image_.beams[index];
+    beam.range_m = in_sensor_m.norm();
+    beam.hit_m = hit_m;
+    const Point2 to_sensor = (robot_from_sensor_.translation() - hit_m) / beam.range_m;
+    beam.normal = normal_at(shape_, point, to_sensor);
+    const double incidence = std::max(1.0 / kLongestFootprint, std::abs(beam.normal.dot(to_sensor)));
+    beam.footprint_m = 0.5 * beam.range_m * image_.step_rad / incidence;
+  }
+
+  const SubScanShape& shape_;
+  const Pose2& robot_from_sensor_;
+  RangeImage& image_;
+  std::vector<double> steps_off_;  ///< how far the hit of each bearing is off its middle; empty for even beams
+};
 
 }  // namespace
 
@@ -49,23 +131,14 @@ RangeImage range_image(const SubScan& sub_scan, const SubScanShape& shape) {
   RangeImage image;
   const Pose2 robot_from_sensor = robot_from_sensor2(sub_scan);
   image.sensor_from_robot = inverse(robot_from_sensor);
-  image.step_rad = std::abs(sub_scan.angle_step_rad);
-  if (sub_scan.ranges_m.empty() || !(image.step_rad > 0.0)) return image;
-  image.first_bearing_rad = first_bearing_rad(sub_scan);
-  image.beams.resize(sub_scan.ranges_m.size());
-  for (std::size_t i = 0; i < shape.scan_points.size(); ++i) {
-    const Point2& hit_m = shape.scan_points[i].p_m;
-    const Point2 in_sensor_m = image.sensor_from_robot * hit_m;
-    const int k = image.beam_at(std::atan2(in_sensor_m.y(), in_sensor_m.x()));
-    if (k < 0) continue;
-    RangeImage::Beam& beam = image.beams[static_cast<std::size_t>(k)];
-    beam.range_m = in_sensor_m.norm();
-    beam.hit_m = hit_m;
-    const Point2 to_sensor = (robot_from_sensor.translation() - hit_m) / beam.range_m;
-    beam.normal = normal_at(shape, i, to_sensor);
-    const double incidence = std::max(1.0 / kLongestFootprint, std::abs(beam.normal.dot(to_sensor)));
-    beam.footprint_m = 0.5 * beam.range_m * image.step_rad / incidence;
-  }
+  if (sub_scan.ranges_m.empty()) return image;
+  const Bearings bearings = bearings_of(sub_scan);
+  image.step_rad = bearings.step_rad;
+  if (!(image.step_rad > 0.0)) return image;
+  image.first_bearing_rad = bearings.first_rad;
+  image.beams.resize(bearings.count);
+  ImageFilling filling(sub_scan, shape, robot_from_sensor, image);
+  for (std::size_t i = 0; i < shape.scan_points.size(); ++i) filling.add(i);
   return image;
 }
 

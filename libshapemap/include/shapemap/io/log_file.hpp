@@ -71,8 +71,14 @@ struct LogSummary {
   struct Sensor {
     std::string label;
     std::size_t num_sub_scans = 0;
-    std::size_t num_beams = 0;  ///< of the first sub-scan
-    double fov_rad = 0.0;
+    std::size_t fewest_beams = 0;         ///< of the sub-scans that have readings
+    std::size_t most_beams = 0;           ///< 0: no sub-scan has readings
+    std::size_t num_without_readings = 0;  ///< sub-scans
+    std::size_t num_without_returns = 0;   ///< sub-scans that have readings, none of which hit something
+    bool has_uneven_beams = false;
+    bool is_upside_down = false;
+    double fov_rad = 0.0;  ///< the widest, from first to last beam
+    double sweep_s = 0.0;  ///< the longest, from first to last beam; 0: the log does not say
     double max_range_m = 0.0;  ///< as the log says; 0: it does not
     double shortest_return_m = 0.0;
     double longest_return_m = 0.0;

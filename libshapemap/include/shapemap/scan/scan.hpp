@@ -22,19 +22,33 @@ struct MountPose {
   double roll_rad = 0.0;
 };
 
-/// One sweep of one laser. Beam i points at `first_angle_rad + i * angle_step_rad` in the sensor's plane
-/// (0 = sensor's x axis, counterclockwise positive); the step is negative for a clockwise sensor.
+/// One sweep of one laser. Angles are in the sensor's plane: 0 is the sensor's x axis, counterclockwise is positive.
+/// Evenly spaced beams are the compact case: beam i points at `first_angle_rad + i * angle_step_rad`, and the step is
+/// negative for a clockwise sensor. Other beams have an angle each; set_beam_angles() sets them.
 struct SubScan {
   std::vector<float> ranges_m;  ///< as recorded; NaN where the sensor itself says "no return"
   double first_angle_rad = 0.0;
-  double angle_step_rad = 0.0;
-  double min_range_m = 0.0;          ///< shorter readings are no returns
-  double max_range_m = 0.0;          ///< readings at or beyond it are no returns; 0 when the log does not say
-  MountPose robot_from_sensor;       ///< where the robot faces its nominal heading
-  double nominal_heading_rad = 0.0;  ///< turn of the robot, or of the sensor on it, since the position's first sub-scan
+  double angle_step_rad = 0.0;          ///< of uneven beams, the typical one
+  std::vector<double> beam_angles_rad;  ///< one per reading where the beams are not evenly spaced, else empty
+  double min_range_m = 0.0;             ///< shorter readings are no returns
+  double max_range_m = 0.0;             ///< readings at or beyond it are no returns; 0 when the log does not say
+  MountPose robot_from_sensor;          ///< where the robot faces its nominal heading
+  double nominal_heading_rad = 0.0;     ///< turn of the robot, or of the sensor on it, since the first sub-scan
   std::string sensor_label;
 
-  double beam_angle_rad(std::size_t beam) const { return first_angle_rad + static_cast<double>(beam) * angle_step_rad; }
+  double start_s = 0.0;             ///< time of the first beam, after the position's timestamp
+  double beam_time_step_s = 0.0;    ///< from each beam to the next; 0 when the log does not say
+  std::vector<float> beam_times_s;  ///< one per reading, after the position's timestamp, where the log has them
+  std::vector<float> intensities;   ///< one per reading where the log has them, in the sensor's own unit
+
+  bool is_evenly_spaced() const { return beam_angles_rad.empty(); }
+  double beam_angle_rad(std::size_t beam) const {
+    return is_evenly_spaced() ? first_angle_rad + static_cast<double>(beam) * angle_step_rad : beam_angles_rad[beam];
+  }
+  /// After the position's timestamp.
+  double beam_time_s(std::size_t beam) const {
+    return beam_times_s.empty() ? start_s + static_cast<double>(beam) * beam_time_step_s : beam_times_s[beam];
+  }
 };
 
 /// One place where the robot stood: the sub-scans taken there make one complete scan.

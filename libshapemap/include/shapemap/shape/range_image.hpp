@@ -28,7 +28,8 @@ struct RangeImage {
   int beam_at(double bearing_rad) const;
 };
 
-/// The image of a sub-scan whose points and polylines are `shape`.
+/// The image of a sub-scan whose points and polylines are `shape`. Uneven beams are put on even bearings, one typical
+/// step apart.
 RangeImage range_image(const SubScan& sub_scan, const SubScanShape& shape);
 
 }  // namespace shapemap

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/scan/range_unit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace shapemap {
+namespace {
+
+constexpr double kFarthestMiddle_m = 100.0;
+
+/// What is usual, as the middle of a log-normal distribution and its width: rooms, and the noise of lasers.
+constexpr double kUsualRange_m = 3.0;
+constexpr double kRangeFactor = 4.0;
+constexpr double kUsualRoughness_m = 0.005;
+constexpr double kRoughnessFactor = 2.5;
+
+/// So many scans, spread over the log, tell.
+constexpr std::size_t kMostScans = 400;
+
+/// The value that `share` of them are below; 0 when there are none.
+double quantile(std::vector<double>& values, double share) {
+  if (values.empty()) return 0.0;
+  const auto index = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + index, values.end());
+  return values[static_cast<std::size_t>(index)];
+}
+
+bool is_reading(float range) { return std::isfinite(range) && range > 0.0F; }
+
+struct Readings {
+  double middle = 0.0;
+  double roughness = 0.0;  ///< how much the smoother half of the surfaces deviates from straight, beam by beam
+};
+
+Readings readings_of(const Log& log) {
+  std::vector<double> ranges;
+  std::vector<double> bends;
+  const std::size_t stride = std::max<std::size_t>(1, log.positions.size() / kMostScans);
+  for (std::size_t i = 0; i < log.positions.size(); i += stride) {
+    for (const SubScan& scan : log.positions[i].sub_scans) {
+      const std::vector<float>& r = scan.ranges_m;
+      for (std::size_t k = 0; k < r.size(); ++k) {
+        if (!is_reading(r[k])) continue;
+        ranges.push_back(r[k]);
+        if (k == 0 || k + 1 == r.size() || !is_reading(r[k - 1]) || !is_reading(r[k + 1])) continue;
+        bends.push_back(std::abs(static_cast<double>(r[k - 1]) - 2.0 * r[k] + r[k + 1]));
+      }
+    }
+  }
+  return {quantile(ranges, 0.5), quantile(bends, 0.25)};
+}
+
+double unusual(double value, double usual, double factor) {
+  const double widths = std::log(value / usual) / std::log(factor);
+  return 0.5 * widths * widths;
+}
+
+/// The log density of a log under a unit, but for what is the same for both.
+double log_density(const Readings& readings, RangeUnit unit) {
+  const double scale = metres_per(unit);
+  double density = -unusual(readings.middle * scale, kUsualRange_m, kRangeFactor);
+  // Readings that are whole numbers may hide all roughness.
+  if (readings.roughness > 0.0) {
+    density -= unusual(readings.roughness * scale, kUsualRoughness_m, kRoughnessFactor);
+  }
+  return density;
+}
+
+}  // namespace
+
+double metres_per(RangeUnit unit) {
+  if (unit == RangeUnit::kMillimetre) return 0.001;
+  return unit == RangeUnit::kCentimetre ? 0.01 : 1.0;
+}
+
+RangeUnit recognised_range_unit(const Log& log) {
+  const Readings readings = readings_of(log);
+  if (!(readings.middle > kFarthestMiddle_m)) return RangeUnit::kMetre;
+  const bool is_cm =
+      log_density(readings, RangeUnit::kCentimetre) > log_density(readings, RangeUnit::kMillimetre);
+  return is_cm ? RangeUnit::kCentimetre : RangeUnit::kMillimetre;
+}
+
+void scale_ranges(Log& log, RangeUnit unit) {
+  const double scale = metres_per(unit);
+  if (scale == 1.0) return;
+  const double middle = readings_of(log).middle;
+  for (Position& position : log.positions) {
+    for (SubScan& scan : position.sub_scans) {
+      for (float& range : scan.ranges_m) range = static_cast<float>(range * scale);
+      if (scan.max_range_m >= middle) scan.max_range_m *= scale;
+      if (scan.min_range_m * scale * 100.0 >= 1.0) scan.min_range_m *= scale;
+    }
+  }
+}
+
+}  // namespace shapemap
