@@ -6,6 +6,8 @@
 #include <numeric>
 #include <vector>
 
+#include "shapemap/scan/beam_angles.hpp"
+
 namespace shapemap {
 namespace {
 
@@ -60,11 +62,14 @@ SubScan unbent(const SubScan& sub_scan, const ReturnOptions& options, const Beam
   const double direction = num > 1 && sub_scan.beam_angle_rad(num - 1) < sub_scan.beam_angle_rad(0) ? -1.0 : 1.0;
   SubScan straight = sub_scan;
   straight.ranges_m.clear();
-  straight.beam_angles_rad.clear();
+  straight.intensities.clear();
+  std::vector<double> angles_rad;
   for (const std::size_t i : once_round(beams, direction)) {
     straight.ranges_m.push_back(beams[i].range_m);
-    straight.beam_angles_rad.push_back(beams[i].angle_rad);
+    angles_rad.push_back(beams[i].angle_rad);
+    if (!sub_scan.intensities.empty()) straight.intensities.push_back(sub_scan.intensities[i]);
   }
+  set_beam_angles(straight, std::move(angles_rad));
   straight.beam_times_s.clear();
   straight.beam_time_step_s = 0.0;
   straight.start_s = 0.0;
