@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "shapemap/core/errors.hpp"
 #include "shapemap/core/parallel_for.hpp"
@@ -31,6 +32,8 @@ constexpr int kAsideSteps = 4;
 /// What is worse than usual by this is looked into.
 constexpr double kUsualFactor = 1.25;
 constexpr double kUsualSlack_m = 0.004;
+/// And by so much, the chain may have lost its way.
+constexpr double kLost_m = 0.07;
 
 constexpr SweepFitOptions kTracking{0.5, 0.15, 5, 2, 1};
 constexpr SweepFitOptions kFinish{0.3, 0.08, 6, 1, 1};
@@ -44,19 +47,14 @@ class Chain {
   double start(std::size_t num, std::size_t num_rates, std::size_t num_starts) {
     std::vector<Start> starts;
     const std::size_t pair = std::min<std::size_t>(2, num);
-    for (double rate = -kMostRate_rad_s; rate <= kMostRate_rad_s + 1e-9; rate += kRateStep_rad_s) {
-      add_start(pair, rate, 0.0, starts);
-    }
+    for_rates([&](double rate) { add_start(pair, rate, 0.0, starts); });
     keep_best(num_rates, starts);
     std::vector<Start> curved;
     for (const Start& one : starts) {
-      for (double more = -kMostAcceleration_rad_s2; more <= kMostAcceleration_rad_s2 + 1e-9;
-           more += kAccelerationStep_rad_s2) {
-        add_start(num, one.rate_rad_s, more, curved);
-      }
+      for_accelerations([&](double more) { add_start(num, one.rate_rad_s, more, curved); });
     }
     keep_best(num_starts, curved);
-    double best_m = 1e9;
+    double best_m = std::numeric_limits<double>::infinity();
     std::vector<Eigen::Vector3d> best = trajectory_.controls();
     for (const Start& one : curved) {
       set_start(num, one.rate_rad_s, one.acceleration_rad_s2);
@@ -73,29 +71,25 @@ class Chain {
 
   void extend(std::size_t i) {
     const std::size_t known = end_of(i - 1);
-    const std::size_t end = end_of(i);
-    const std::size_t first = i > 3 ? i - 3 : 0;
-    const std::size_t free = i > 1 ? trajectory_.support(sweeps_[i - 2].first_s).first + 1 : 0;
-    const std::vector<Eigen::Vector3d> before(trajectory_.controls().begin() + static_cast<std::ptrdiff_t>(free),
-                                              trajectory_.controls().begin() + static_cast<std::ptrdiff_t>(end));
-    std::vector<Eigen::Vector3d> best;
-    double best_m = 1e9;
+    Extension next;
+    next.sweep = i;
+    next.first = i > 3 ? i - 3 : 0;
+    next.free = i > 1 ? trajectory_.support(sweeps_[i - 2].first_s).first + 1 : 0;
+    next.end = end_of(i);
+    next.best = copied(next);
+    const std::vector<Eigen::Vector3d> before = next.best;
     const double fine_m = kUsualFactor * usual_m() + kUsualSlack_m;
-    for (int aside = 0; aside <= kAsideSteps && best_m > fine_m; ++aside) {
+    for (int aside = 0; aside <= kAsideSteps && next.best_m > fine_m; ++aside) {
       for (const int sign : {1, -1}) {
         if (aside == 0 && sign < 0) continue;
-        std::copy(before.begin(), before.end(), trajectory_.controls().begin() + static_cast<std::ptrdiff_t>(free));
-        foresee(i, known, end, sign * aside * kAsideStep_rad);
-        fit_sweeps(sweeps_, first, i + 1, free, kTracking, trajectory_);
-        const double misfit_m = misfit(i > 1 ? i - 2 : 0, i + 1);
-        if (misfit_m >= best_m) continue;
-        best_m = misfit_m;
-        best.assign(trajectory_.controls().begin() + static_cast<std::ptrdiff_t>(free),
-                    trajectory_.controls().begin() + static_cast<std::ptrdiff_t>(end));
+        put(before, next);
+        foresee(i, known, next.end, sign * aside * kAsideStep_rad);
+        try_here(next);
       }
     }
-    std::copy(best.begin(), best.end(), trajectory_.controls().begin() + static_cast<std::ptrdiff_t>(free));
-    usual_m_.push_back(best_m);
+    if (next.best_m > std::max(fine_m, kLost_m)) restart(before, next);
+    put(next.best, next);
+    usual_m_.push_back(next.best_m);
   }
 
   SweepTrajectory& trajectory() { return trajectory_; }
@@ -109,6 +103,75 @@ class Chain {
   }
 
  private:
+  /// What is tried for the next sweep: it moves the control points [free, end), and looks at sweeps from `first` on.
+  struct Extension {
+    std::size_t sweep = 0;
+    std::size_t first = 0;
+    std::size_t free = 0;
+    std::size_t end = 0;
+    double best_m = std::numeric_limits<double>::infinity();
+    std::vector<Eigen::Vector3d> best;
+  };
+
+  std::vector<Eigen::Vector3d> copied(const Extension& next) const {
+    const auto begin = trajectory_.controls().begin();
+    return {begin + static_cast<std::ptrdiff_t>(next.free), begin + static_cast<std::ptrdiff_t>(next.end)};
+  }
+
+  void put(const std::vector<Eigen::Vector3d>& controls, const Extension& next) {
+    std::copy(controls.begin(), controls.end(), trajectory_.controls().begin() + static_cast<std::ptrdiff_t>(next.free));
+  }
+
+  void try_here(Extension& next) {
+    const std::size_t i = next.sweep;
+    fit_sweeps(sweeps_, next.first, i + 1, next.free, kTracking, trajectory_);
+    const double misfit_m = misfit(i > 1 ? i - 2 : 0, i + 1);
+    if (!(misfit_m < next.best_m)) return;
+    next.best_m = misfit_m;
+    next.best = copied(next);
+  }
+
+  /// As at the start of a chain: any rates from the last sweep on.
+  void restart(const std::vector<Eigen::Vector3d>& before, Extension& next) {
+    const std::size_t last = next.sweep - 1;
+    put(next.best, next);
+    const double from_s = sweeps_[last].first_s;
+    const Eigen::Vector3d from = trajectory_.at(from_s);
+    const auto set = [&](double rate_rad_s, double acceleration_rad_s2) {
+      put(before, next);
+      for (std::size_t k = next.free; k < next.end; ++k) {
+        const double t = trajectory_.time_of(k) - from_s;
+        if (t <= -period_s_) continue;
+        trajectory_.controls()[k] = from;
+        trajectory_.controls()[k].z() += rate_rad_s * t + 0.5 * acceleration_rad_s2 * t * t;
+      }
+    };
+    std::vector<Start> starts;
+    for_rates([&](double rate) {
+      for_accelerations([&](double more) {
+        set(rate, more);
+        starts.push_back({misfit(last, next.sweep + 1), rate, more});
+      });
+    });
+    keep_best(kQuickStarts, starts);
+    for (const Start& one : starts) {
+      set(one.rate_rad_s, one.acceleration_rad_s2);
+      try_here(next);
+    }
+  }
+
+  template <class Visit>
+  static void for_rates(const Visit& visit) {
+    const auto steps = static_cast<int>(std::lround(kMostRate_rad_s / kRateStep_rad_s));
+    for (int k = -steps; k <= steps; ++k) visit(k * kRateStep_rad_s);
+  }
+
+  template <class Visit>
+  static void for_accelerations(const Visit& visit) {
+    const auto steps = static_cast<int>(std::lround(kMostAcceleration_rad_s2 / kAccelerationStep_rad_s2));
+    for (int k = -steps; k <= steps; ++k) visit(k * kAccelerationStep_rad_s2);
+  }
+
   struct Start {
     double misfit_m;
     double rate_rad_s;
