@@ -28,8 +28,9 @@ from shapemap_sim.sweeps import SweepOptions, simulate_sweeps, sweep_text
 from shapemap_sim.write import tum_line, without_nan, write_whole
 from simulate_arena import number
 
-EXAMPLE = """The laser is carried at 0.8 m/s through a furnished building, and sways. A pair of consecutive scans is right
-within 0.20 m and 5 degrees of the exact poses; errors of the map are those left after the planar motion that fits best.
+EXAMPLE = """The laser is carried at 0.8 m/s through a furnished building, and sways. A pair of consecutive scans is
+right within 0.20 m and 5 degrees of the exact poses; errors of the map are those left after the planar motion that
+fits best.
 
 example:
   scripts/evaluate_sweeps.py --yaw 10,20,30,60 --seeds 0-4 --json results/sweeps.json

@@ -45,7 +45,8 @@ std::vector<SweepVerdict> straighten(const MapArguments& arguments, LogSet& logs
   const MappingOptions& options = arguments.settings.mapping;
   ConsoleObserver observer(arguments.verbosity != Verbosity::kQuiet);
   std::vector<SweepVerdict> verdicts;
-  logs.log = straightened(std::move(logs.log), options.returns, options.deskew, options.chain.threads, observer, verdicts);
+  logs.log =
+      straightened(std::move(logs.log), options.returns, options.deskew, options.chain.threads, observer, verdicts);
   observer.finish();
   warnings.insert(warnings.end(), observer.warnings().begin(), observer.warnings().end());
   return verdicts;

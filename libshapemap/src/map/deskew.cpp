@@ -92,8 +92,10 @@ class Part {
 
   void straighten_run(const SweepRun& run, const BeamTiming& timing, std::vector<Position>& positions) {
     const std::vector<Sweep> sweeps = timed_sweeps(log_, run.first, run.last, timing, returns_, kPoints);
-    const SweepMotion motion =
-        sweep_motion(sweeps, verdict_.period_s, threads_, [this]() { return observer_.keep_going(); });
+    const SweepMotion motion = sweep_motion(sweeps, verdict_.period_s, threads_, [&](std::size_t done) {
+      observer_.on_progress(run.first - part_.first + done, part_.last - part_.first);
+      return observer_.keep_going();
+    });
     std::vector<SweepVerdict> parts(sweeps.size());
     parallel_for(sweeps.size(), threads_, [&](std::size_t i) {
       const double next_m = i + 1 < sweeps.size() ? motion.misfit_m[i + 1] : motion.misfit_m[i];

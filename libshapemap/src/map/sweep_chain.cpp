@@ -41,7 +41,9 @@ constexpr SweepFitOptions kFinish{0.3, 0.08, 6, 1, 1};
 class Chain {
  public:
   Chain(const std::vector<Sweep>& sweeps, double period_s)
-      : sweeps_(sweeps), period_s_(period_s), trajectory_(first_s(sweeps), last_s(sweeps), period_s / kKnotsPerPeriod) {}
+      : sweeps_(sweeps),
+        period_s_(period_s),
+        trajectory_(first_s(sweeps), last_s(sweeps), period_s / kKnotsPerPeriod) {}
 
   /// Any rates first, of two sweeps; then the likely ones with an acceleration, of more of them.
   double start(std::size_t num, std::size_t num_rates, std::size_t num_starts) {
@@ -119,7 +121,8 @@ class Chain {
   }
 
   void put(const std::vector<Eigen::Vector3d>& controls, const Extension& next) {
-    std::copy(controls.begin(), controls.end(), trajectory_.controls().begin() + static_cast<std::ptrdiff_t>(next.free));
+    std::copy(controls.begin(), controls.end(),
+              trajectory_.controls().begin() + static_cast<std::ptrdiff_t>(next.free));
   }
 
   void try_here(Extension& next) {
@@ -242,27 +245,27 @@ class Chain {
 }  // namespace
 
 SweepMotion sweep_motion(const std::vector<Sweep>& sweeps, double period_s, int threads,
-                         const std::function<bool()>& keep_going) {
-  const auto check = [&]() {
-    if (keep_going && !keep_going()) throw Interrupted();
+                         const std::function<bool(std::size_t done)>& keep_going) {
+  const auto check = [&](std::size_t done) {
+    if (keep_going && !keep_going(done)) throw Interrupted();
   };
   Chain chain(sweeps, period_s);
   chain.start(std::min(kFirstSweeps, sweeps.size()), kStartRates, kStarts);
   for (std::size_t i = std::min(kFirstSweeps, sweeps.size()); i < sweeps.size(); ++i) {
-    check();
+    check(i);
     chain.extend(i);
   }
   SweepFitOptions finish = kFinish;
   finish.threads = threads;
-  check();
+  check(sweeps.size());
   fit_sweeps(sweeps, 0, sweeps.size(), 0, finish, chain.trajectory());
   SweepTrajectory trajectory = chain.trajectory().refined();
   fit_sweeps(sweeps, 0, sweeps.size(), 0, finish, trajectory);
   SweepMotion motion{trajectory, std::vector<double>(sweeps.size(), 0.0)};
   parallel_for(sweeps.size(), threads, [&](std::size_t i) {
     if (i == 0) return;
-    motion.misfit_m[i] = sweep_misfit(placed_sweep(sweeps[i - 1], motion.trajectory),
-                                      placed_sweep(sweeps[i], motion.trajectory));
+    motion.misfit_m[i] =
+        sweep_misfit(placed_sweep(sweeps[i - 1], motion.trajectory), placed_sweep(sweeps[i], motion.trajectory));
   });
   return motion;
 }

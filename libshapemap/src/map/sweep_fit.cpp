@@ -25,15 +25,8 @@ constexpr double kJerk_rad_s3 = 100.0;
 constexpr double kTrustedShareOfGate = 0.3;
 const double kCosTangentGate = std::cos(35 * kDegree);
 
-/// Points of one surface are this near each other, at least; and farther, the farther they are away.
-constexpr double kSurfaceGap_m = 0.10;
-constexpr double kSurfaceGapPerRange = 0.06;
-constexpr std::size_t kSurfacePoints = 3;  ///< to either side
-
 /// Steps below this change nothing that matters [m, rad].
 constexpr double kStill = 2e-4;
-
-constexpr double kMisfitLimit_m = 0.25;
 
 /// Where a sweep's points are, and what they depend on.
 struct Linearised {
@@ -116,10 +109,11 @@ class Collector {
 void add_partners(const Linearised& from, const Linearised& to, double gate_m, std::size_t stride, Block& block) {
   const double trusted_m = kTrustedShareOfGate * gate_m;
   Collector collector(block);
+  SweepNeighbours neighbours(to.placed);
   for (std::size_t k = 0; k < from.placed.p_m.size(); k += stride) {
     const Point2& own = from.placed.normals[k];
     if (own.isZero()) continue;
-    const PointIndex::Neighbour near = to.placed.index.nearest(from.placed.p_m[k], gate_m);
+    const PointIndex::Neighbour near = neighbours.nearest(from.placed.p_m[k], gate_m);
     if (!(near.distance_m <= gate_m)) continue;
     const Point2& normal = to.placed.normals[near.point];
     if (normal.isZero() || std::abs(normal.dot(own)) < kCosTangentGate) continue;
@@ -241,75 +235,15 @@ class Fit {
   std::size_t fixed_ = 0;  ///< so many of these
 };
 
-double mean_distance(const PlacedSweep& from, const PlacedSweep& to) {
-  double sum_m = 0.0;
-  for (std::size_t k = 0; k < from.p_m.size(); ++k) {
-    const PointIndex::Neighbour near = to.index.nearest(from.p_m[k], kMisfitLimit_m);
-    double distance_m = kMisfitLimit_m;
-    if (near.distance_m <= kMisfitLimit_m) {
-      const Point2& normal = to.normals[near.point];
-      distance_m = normal.isZero() ? near.distance_m : std::abs(normal.dot(from.p_m[k] - to.p_m[near.point]));
-    }
-    sum_m += distance_m;
-  }
-  return sum_m / std::max<double>(1.0, static_cast<double>(from.p_m.size()));
-}
-
 }  // namespace
-
-PlacedSweep placed_sweep(const Sweep& sweep, const SweepTrajectory& trajectory) {
-  PlacedSweep placed;
-  const std::size_t num = sweep.points.size();
-  placed.p_m.reserve(num);
-  std::vector<double> gap_m;
-  gap_m.reserve(num);
-  for (const TimedPoint& point : sweep.points) {
-    const Eigen::Vector3d at = trajectory.at(point.time_s);
-    placed.p_m.push_back(rotate(point.p_m, at.z()) + at.head<2>());
-    gap_m.push_back(kSurfaceGap_m + kSurfaceGapPerRange * point.p_m.norm());
-  }
-  placed.normals.assign(num, Point2(0.0, 0.0));
-  for (std::size_t k = 0; k < num; ++k) {
-    std::size_t low = k;
-    while (low > 0 && k - low < kSurfacePoints && !sweep.points[low].begins_line &&
-           (placed.p_m[low] - placed.p_m[low - 1]).norm() < gap_m[low]) {
-      --low;
-    }
-    std::size_t high = k;
-    while (high + 1 < num && high - k < kSurfacePoints && !sweep.points[high + 1].begins_line &&
-           (placed.p_m[high + 1] - placed.p_m[high]).norm() < gap_m[high]) {
-      ++high;
-    }
-    if (high - low < 2) continue;
-    Point2 mean(0.0, 0.0);
-    for (std::size_t m = low; m <= high; ++m) mean += placed.p_m[m];
-    mean /= static_cast<double>(high - low + 1);
-    double cos2 = 0.0;
-    double sin2 = 0.0;
-    for (std::size_t m = low; m <= high; ++m) {
-      const Point2 d = placed.p_m[m] - mean;
-      cos2 += d.x() * d.x() - d.y() * d.y();
-      sin2 += 2.0 * d.x() * d.y();
-    }
-    const double along_rad = 0.5 * std::atan2(sin2, cos2);
-    placed.normals[k] = {-std::sin(along_rad), std::cos(along_rad)};
-  }
-  placed.index = PointIndex(placed.p_m);
-  return placed;
-}
-
-double sweep_misfit(const PlacedSweep& a, const PlacedSweep& b) {
-  return 0.5 * (mean_distance(a, b) + mean_distance(b, a));
-}
 
 void fit_sweeps(const std::vector<Sweep>& sweeps, std::size_t first, std::size_t last, std::size_t first_free,
                 const SweepFitOptions& options, SweepTrajectory& trajectory) {
   Fit fit(sweeps, first, last, first_free, options, trajectory);
   double gate_m = options.first_gate_m;
-  const double shrink =
-      options.iterations > 1
-          ? std::pow(options.last_gate_m / options.first_gate_m, 1.0 / static_cast<double>(options.iterations - 1))
-          : 1.0;
+  const double shrink = options.iterations > 1 ? std::pow(options.last_gate_m / options.first_gate_m,
+                                                          1.0 / static_cast<double>(options.iterations - 1))
+                                               : 1.0;
   for (int k = 0; k < options.iterations; ++k, gate_m *= shrink) {
     if (fit.iterate(gate_m) < kStill) break;
   }

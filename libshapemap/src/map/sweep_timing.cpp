@@ -98,8 +98,8 @@ double sweep_time_of_rate_s(const Log& log, std::size_t first, std::size_t last,
       if (!labels.insert(sub_scan.sensor_label).second) return 0.0;
       const std::size_t num = sub_scan.ranges_m.size();
       if (num < 2) continue;
-      const double step_rad = std::abs(sub_scan.beam_angle_rad(num - 1) - sub_scan.beam_angle_rad(0)) /
-                              static_cast<double>(num - 1);
+      const double step_rad =
+          std::abs(sub_scan.beam_angle_rad(num - 1) - sub_scan.beam_angle_rad(0)) / static_cast<double>(num - 1);
       seen_rad.push_back(std::min(2.0 * kPi, step_rad * static_cast<double>(num)));
     }
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "shapemap/core/errors.hpp"
 #include "shapemap/core/parallel_for.hpp"
@@ -13,8 +14,8 @@ namespace {
 
 /// Stretches of so many sweeps, not overlapping; so many are looked at, and so many of these judged.
 constexpr std::size_t kStretch = 4;
-constexpr std::size_t kLookedAt = 96;
-constexpr std::size_t kJudged = 32;
+constexpr std::size_t kLookedAt = 64;
+constexpr std::size_t kJudged = 24;
 constexpr std::size_t kLeastJudged = 12;
 constexpr std::size_t kPoints = 120;
 
@@ -72,7 +73,15 @@ std::vector<SweepRun> fastest(const std::vector<SweepRun>& stretches, const std:
 
 /// In how many rows column `a` has less than column `b`.
 std::size_t num_less(const std::vector<std::vector<double>>& rows, std::size_t a, std::size_t b) {
-  return static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [&](const auto& row) { return row[a] < row[b]; }));
+  return static_cast<std::size_t>(
+      std::count_if(rows.begin(), rows.end(), [&](const auto& row) { return row[a] < row[b]; }));
+}
+
+/// By how much column `b` is less than column `a`, row by row.
+std::vector<double> gains_of(const std::vector<std::vector<double>>& rows, std::size_t a, std::size_t b) {
+  std::vector<double> gains;
+  for (const auto& row : rows) gains.push_back(row[a] - row[b]);
+  return gains;
 }
 
 double mean_of(const std::vector<std::vector<double>>& rows, std::size_t column) {
@@ -83,14 +92,31 @@ double mean_of(const std::vector<std::vector<double>>& rows, std::size_t column)
 
 }  // namespace
 
-double chance_of_heads(std::size_t heads, std::size_t num) {
-  double chance = 0.0;
-  for (std::size_t k = heads; k <= num; ++k) {
-    const auto n = static_cast<double>(num);
-    const auto at = static_cast<double>(k);
-    chance += std::exp(std::lgamma(n + 1.0) - std::lgamma(at + 1.0) - std::lgamma(n - at + 1.0) - n * std::log(2.0));
+double chance_of_gains(const std::vector<double>& gains) {
+  std::vector<double> sizes;
+  for (const double gain : gains) {
+    if (gain != 0.0) sizes.push_back(std::abs(gain));
   }
-  return std::min(1.0, chance);
+  std::sort(sizes.begin(), sizes.end());
+  // Twice the ranks, so that those of equal sizes, which share their mean, are whole numbers.
+  const auto rank_of = [&](double size) {
+    const auto [low, high] = std::equal_range(sizes.begin(), sizes.end(), size);
+    return static_cast<std::size_t>((low - sizes.begin()) + (high - sizes.begin()) + 1);
+  };
+  std::size_t reached = 0;
+  std::size_t most = 0;
+  std::vector<double> chance{1.0};  // of each sum of ranks
+  for (const double gain : gains) {
+    if (gain == 0.0) continue;
+    const std::size_t rank = rank_of(std::abs(gain));
+    if (gain > 0.0) reached += rank;
+    most += rank;
+    chance.resize(most + 1, 0.0);
+    for (std::size_t sum = most + 1; sum-- > 0;) {
+      chance[sum] = 0.5 * (chance[sum] + (sum >= rank ? chance[sum - rank] : 0.0));
+    }
+  }
+  return std::accumulate(chance.begin() + static_cast<std::ptrdiff_t>(reached), chance.end(), 0.0);
 }
 
 BeamTiming best_timing(const Log& log, const std::vector<SweepRun>& runs, double period_s,
@@ -116,13 +142,13 @@ BeamTiming best_timing(const Log& log, const std::vector<SweepRun>& runs, double
   if (!observer.keep_going()) throw Interrupted();
   std::size_t best = 1;
   for (std::size_t c = 2; c <= candidates.size(); ++c) {
-    const bool is_surely_less = chance_of_heads(num_less(misfits_m, c, best), judged.size()) < kError;
+    const bool is_surely_less = chance_of_gains(gains_of(misfits_m, best, c)) < kError;
     if (is_surely_less && mean_of(misfits_m, c) < mean_of(misfits_m, best)) best = c;
   }
   verdict.num_better = num_less(misfits_m, best, 0);
   verdict.misfit_before_m = mean_of(misfits_m, 0);
   verdict.misfit_after_m = mean_of(misfits_m, best);
-  const double chance = chance_of_heads(verdict.num_better, judged.size()) * static_cast<double>(candidates.size());
+  const double chance = chance_of_gains(gains_of(misfits_m, 0, best)) * static_cast<double>(candidates.size());
   return chance < kError && verdict.misfit_after_m < verdict.misfit_before_m ? candidates[best - 1] : BeamTiming{};
 }
 

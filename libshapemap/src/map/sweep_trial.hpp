@@ -17,7 +17,8 @@ BeamTiming best_timing(const Log& log, const std::vector<SweepRun>& runs, double
                        const std::vector<BeamTiming>& candidates, const ReturnOptions& returns, int threads,
                        RunObserver& observer, SweepVerdict& verdict);
 
-/// Probability that of `num` tosses of a fair coin so many or more show heads.
-double chance_of_heads(std::size_t heads, std::size_t num);
+/// Probability of gains as high as these, all in all, where gains and losses are equally likely: Wilcoxon's signed-rank
+/// test, one-sided and exact.
+double chance_of_gains(const std::vector<double>& gains);
 
 }  // namespace shapemap

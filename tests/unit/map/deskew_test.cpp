@@ -19,7 +19,7 @@ namespace {
 using test::RollingLaser;
 using testing::HasSubstr;
 
-constexpr std::size_t kSweeps = 60;
+constexpr std::size_t kSweeps = 52;
 
 struct Straightened {
   Log log;
@@ -103,8 +103,7 @@ TEST(Deskew, AClockwiseLaserInAMirroredWorldIsTheMirrorImage) {
   on.mode = Deskew::kOn;
   const Log log = straightened_log(test::bent_log(world, test::swinging(30 * kDegree, 0.2), 12, laser), on).log;
   laser.clockwise = true;
-  const Log other =
-      straightened_log(test::bent_log(mirrored, test::swinging(-30 * kDegree, 0.2), 12, laser), on).log;
+  const Log other = straightened_log(test::bent_log(mirrored, test::swinging(-30 * kDegree, 0.2), 12, laser), on).log;
   for (std::size_t i = 0; i < log.positions.size(); ++i) {
     const SubScan& a = log.positions[i].sub_scans[0];
     const SubScan& b = other.positions[i].sub_scans[0];
@@ -234,10 +233,14 @@ TEST(Deskew, AnEmptyLogAndScansWithoutReturnsAreNoTrouble) {
   EXPECT_EQ(straightened_log(log, on).log.positions.size(), 12U);
 }
 
-TEST(ChanceOfHeads, IsThatOfTheBinomialDistribution) {
-  EXPECT_NEAR(chance_of_heads(0, 10), 1.0, 1e-12);
-  EXPECT_NEAR(chance_of_heads(9, 10), 11.0 / 1024.0, 1e-12);
-  EXPECT_NEAR(chance_of_heads(32, 32), std::pow(0.5, 32), 1e-18);
+TEST(ChanceOfGains, IsThatOfTheTablesOfTheSignedRankTest) {
+  EXPECT_EQ(chance_of_gains({}), 1.0);
+  EXPECT_NEAR(chance_of_gains({1.0, 2.0, 3.0}), 1.0 / 8.0, 1e-12);
+  EXPECT_NEAR(chance_of_gains({-1.0, 2.0, 3.0}), 2.0 / 8.0, 1e-12);
+  EXPECT_NEAR(chance_of_gains({1.0, 2.0, -3.0}), 5.0 / 8.0, 1e-12);
+  EXPECT_NEAR(chance_of_gains({0.0, 1.0, 1.0, -1.0}), 4.0 / 8.0, 1e-12);
+  // Of ten, a sum of losses of at most 8 has the chance 0.0244.
+  EXPECT_NEAR(chance_of_gains({1, 2, 3, 4, 5, 6, 7, -8, 9, 10}), 0.0244, 1e-4);
 }
 
 }  // namespace

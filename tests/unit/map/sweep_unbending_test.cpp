@@ -47,7 +47,8 @@ TEST(Unbent, AMountedAndUpsideDownLaserSeesTheSame) {
   const test::Motion robot = test::swinging(40 * kDegree, 0.8);
   const Pose2 robot_from_sensor{0.3, -0.2, 1.1};
   const RollingLaser laser;
-  Log log = test::bent_log(world, [&](double time_s) { return robot(time_s) * robot_from_sensor; }, 6, laser);
+  Log log = test::bent_log(
+      world, [&](double time_s) { return robot(time_s) * robot_from_sensor; }, 6, laser);
   for (Position& position : log.positions) {
     SubScan& scan = position.sub_scans[0];
     // What runs counterclockwise above runs clockwise for a laser that hangs from the ceiling.

@@ -45,17 +45,17 @@ struct DeskewOptions {
 /// What was done about the sweeps of one log.
 struct SweepVerdict {
   bool straightened = false;
-  double period_s = 0.0;      ///< from one sweep to the next
-  double sweep_time_s = 0.0;  ///< that was taken to straighten; 0: none
-  bool told = false;          ///< the log itself tells when its beams were sent
-  std::size_t num_judged = 0;  ///< stretches of fast turning that were tried with and without straightening
-  std::size_t num_better = 0;  ///< of these, those that went together better for it
-  double misfit_before_m = 0.0;  ///< of successive scans there, as they are
-  double misfit_after_m = 0.0;   ///< and straightened
-  std::size_t num_sweeps = 0;        ///< that were straightened
-  std::size_t num_left = 0;          ///< whose motion could not be told
-  std::size_t num_beams_twice = 0;   ///< beams left out where a sweep went round more than once
-  std::string text;                  ///< one line for people
+  double period_s = 0.0;            ///< from one sweep to the next
+  double sweep_time_s = 0.0;        ///< that was taken to straighten; 0: none
+  bool told = false;                ///< the log itself tells when its beams were sent
+  std::size_t num_judged = 0;       ///< stretches of fast turning that were tried with and without straightening
+  std::size_t num_better = 0;       ///< of these, those that went together better for it
+  double misfit_before_m = 0.0;     ///< of successive scans there, as they are
+  double misfit_after_m = 0.0;      ///< and straightened
+  std::size_t num_sweeps = 0;       ///< that were straightened
+  std::size_t num_left = 0;         ///< whose motion could not be told
+  std::size_t num_beams_twice = 0;  ///< beams left out where a sweep went round more than once
+  std::string text;                 ///< one line for people
 };
 
 /// The log with its sweeps as they would be if all beams of one had been sent at its stamp. A part of it is given back
