@@ -101,9 +101,9 @@ def test_pairs_are_aligned_with_straight_sweeps(run, tmp_path, bent):
         assert result.returncode == 0, result.stderr
         off = []
         for i, line in enumerate(result.stdout.splitlines()):
-            pose = json.loads(line)["ref_from_query"]
+            _, _, theta_rad = json.loads(line)["hypotheses"][0]["pose"]
             truth = pose_at((i + 1) * PERIOD_S)[2] - pose_at(i * PERIOD_S)[2]
-            off.append(abs(pose["theta_deg"] - math.degrees(truth)) if pose else 180.0)
+            off.append(math.degrees(abs(theta_rad - truth)))
         turned[mode] = sorted(off)[len(off) // 2]
     assert turned["auto"] < 0.3 * turned["off"]
 
