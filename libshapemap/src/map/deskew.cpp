@@ -87,7 +87,14 @@ class Part {
     }
     if (candidates.empty() || runs.empty()) return {};
     if (options_.mode == Deskew::kOn) return candidates.front();
-    return best_timing(log_, runs, verdict_.period_s, candidates, returns_, threads_, observer_, verdict_);
+    const BeamTiming best =
+        best_timing(log_, runs, verdict_.period_s, candidates, returns_, threads_, observer_, verdict_);
+    if (candidates.front().told && !best.told) {
+      observer_.on_warning("by what the log says, a sweep takes " + seconds_text(told_s) + ", but scans go together " +
+                           (best.sweep_time_s == 0.0 ? "worse for it" : "better by another time") +
+                           "; that is not used");
+    }
+    return best;
   }
 
   void straighten_run(const SweepRun& run, const BeamTiming& timing, std::vector<Position>& positions) {

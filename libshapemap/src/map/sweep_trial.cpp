@@ -129,7 +129,8 @@ BeamTiming best_timing(const Log& log, const std::vector<SweepRun>& runs, double
   if (!observer.keep_going()) throw Interrupted();
   const std::vector<SweepRun> judged = fastest(stretches, looks);
   verdict.num_judged = judged.size();
-  if (judged.size() < kLeastJudged) return {};
+  const BeamTiming unless_refuted = candidates.front().told ? candidates.front() : BeamTiming{};
+  if (judged.size() < kLeastJudged) return unless_refuted;
 
   // Column 0: as the scans are.
   std::vector<std::vector<double>> misfits_m(judged.size(), std::vector<double>(candidates.size() + 1));
@@ -148,8 +149,10 @@ BeamTiming best_timing(const Log& log, const std::vector<SweepRun>& runs, double
   verdict.num_better = num_less(misfits_m, best, 0);
   verdict.misfit_before_m = mean_of(misfits_m, 0);
   verdict.misfit_after_m = mean_of(misfits_m, best);
-  const double chance = chance_of_gains(gains_of(misfits_m, 0, best)) * static_cast<double>(candidates.size());
-  return chance < kError && verdict.misfit_after_m < verdict.misfit_before_m ? candidates[best - 1] : BeamTiming{};
+  const auto tries = static_cast<double>(candidates.size());
+  if (tries * chance_of_gains(gains_of(misfits_m, 0, best)) < kError) return candidates[best - 1];
+  // What a log tells needs no proof, but must not be proved wrong.
+  return chance_of_gains(gains_of(misfits_m, best, 0)) < kError ? BeamTiming{} : unless_refuted;
 }
 
 }  // namespace shapemap

@@ -155,6 +155,27 @@ TEST(Deskew, TimesThatCannotBeAreTold) {
   }
 }
 
+TEST(Deskew, TimesThatScansContradictAreTold) {
+  const test::World world = test::cluttered_room(5);
+  RollingLaser at_once = noisy();
+  at_once.sweep_share = 0.0;
+  Log log = test::bent_log(world, test::swinging(30 * kDegree, 0.2), kSweeps, at_once);
+  for (Position& position : log.positions) position.sub_scans[0].beam_time_step_s = noisy().beam_step_s();
+  const Straightened result = straightened_log(log);
+  EXPECT_FALSE(result.verdicts[0].straightened);
+  ASSERT_EQ(result.warnings.size(), 1U);
+  EXPECT_THAT(result.warnings[0], HasSubstr("worse for it"));
+}
+
+TEST(Deskew, TimesThatTheLogTellsNeedNoProof) {
+  const test::World world = test::cluttered_room(5);
+  Log log = test::bent_log(world, test::swinging(30 * kDegree, 0.2), 12, noisy());
+  for (Position& position : log.positions) position.sub_scans[0].beam_time_step_s = noisy().beam_step_s();
+  EXPECT_TRUE(straightened_log(log).verdicts[0].straightened);
+  for (Position& position : log.positions) position.sub_scans[0].beam_time_step_s = 0.0;
+  EXPECT_FALSE(straightened_log(log).verdicts[0].straightened);
+}
+
 TEST(Deskew, ASweepTimeThatIsTypedIsTaken) {
   const test::World world = test::cluttered_room(5);
   const Log log = test::bent_log(world, test::swinging(30 * kDegree, 0.2), kSweeps, noisy());
