@@ -35,8 +35,8 @@ std::string sensor_text(const LogSummary::Sensor& sensor) {
   char text[320];
   std::snprintf(text, sizeof text,
                 "  sub-scans   %zu\n  beams       %s over %.6g deg\n  returns     %.1f %%, %.2f to %.2f m\n",
-                sensor.num_sub_scans, beams_text(sensor).c_str(), sensor.fov_rad / kDegree,
-                100.0 * sensor.return_ratio, sensor.shortest_return_m, sensor.longest_return_m);
+                sensor.num_sub_scans, beams_text(sensor).c_str(), sensor.fov_rad / kDegree, 100.0 * sensor.return_ratio,
+                sensor.shortest_return_m, sensor.longest_return_m);
   std::string all = "sensor      " + (sensor.label.empty() ? "(without a label)" : sensor.label) + "\n" + text;
   if (sensor.max_range_m > 0.0) {
     std::snprintf(text, sizeof text, "  max. range  %.6g m\n", sensor.max_range_m);

@@ -32,13 +32,15 @@ void check_paths(const Arguments& arguments) {
   }
 }
 
-/// What shapemap takes for no return is none for the other methods either.
+/// What shapemap takes for no return is none for the other methods either. Beams that hit nothing can still be told
+/// from those whose reading means nothing, for the picture.
 void drop_non_returns(Log& log, const ReturnOptions& options) {
   for (Position& position : log.positions) {
     for (SubScan& sub_scan : position.sub_scans) {
       const RangeLimits limits = range_limits(sub_scan, options);
       for (float& range_m : sub_scan.ranges_m) {
-        if (!is_return(range_m, limits)) range_m = std::numeric_limits<float>::quiet_NaN();
+        if (is_return(range_m, limits)) continue;
+        range_m = is_open(range_m, limits) ? std::numeric_limits<float>::quiet_NaN() : 0.0F;
       }
     }
   }

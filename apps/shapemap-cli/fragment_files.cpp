@@ -67,7 +67,8 @@ void check_fragments_folder(const std::string& folder, const std::vector<std::st
   if (!force && !old.empty()) throw OutputError("'" + old.front() + "' exists already; --force replaces it");
 }
 
-void add_fragments(const MapArguments& arguments, const LogSet& logs, const MapResult& result, OutputSet& outputs) {
+void add_fragments(const MapArguments& arguments, const LogSet& logs, const MapResult& result, OutputSet& outputs,
+                   std::vector<DrawnFragment>& drawn) {
   const MapSettings& settings = arguments.settings;
   const fs::path folder = without_last_slash(arguments.fragments_folder);
   outputs.add_folder(folder.string());
@@ -81,6 +82,7 @@ void add_fragments(const MapArguments& arguments, const LogSet& logs, const MapR
     if (static_cast<int>(i) == result.largest_fragment || placed.empty()) continue;
     const std::string base = (folder / ("fragment_" + std::to_string(i))).string();
     const GridMap map = build_grid_map(logs.log, placed, settings.mapping.returns, settings.grid);
+    drawn.push_back({static_cast<int>(i), map.num_returns, map.num_outside});
     add_map(note(base + ".png"), map, settings.drawing.draw_path ? &placed : nullptr, outputs);
     note(base + ".yaml");
     const std::vector<LogPart> parts = parts_of(logs.log);

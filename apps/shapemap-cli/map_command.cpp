@@ -16,6 +16,11 @@
 namespace shapemap::cli {
 namespace {
 
+struct MapRun {
+  MapResult result;
+  MapNotes notes;
+};
+
 void require_a_map(const MapArguments& arguments, const MapResult& result) {
   if (!result.placed().empty()) return;
   const std::string more =
@@ -26,18 +31,23 @@ void require_a_map(const MapArguments& arguments, const MapResult& result) {
   throw InputError(why);
 }
 
-MapResult map_with_progress(const LogSet& logs, const MapArguments& arguments, TraceSink* sink,
-                            std::vector<std::string>& warnings, RunCosts& costs) {
+MapRun map_with_progress(const LogSet& logs, const MapArguments& arguments, TraceSink* sink,
+                         std::vector<std::string>& warnings, RunCosts& costs) {
   ConsoleObserver observer(arguments.verbosity != Verbosity::kQuiet);
   const std::unique_ptr<AlignmentStoreFile> state = open_state(arguments, logs.log, warnings);
   print_resumed(arguments, state.get());
-  MapResult result = map_log(logs.log, arguments.settings.mapping, observer, sink, state.get());
+  MapRun run;
+  MapResult& result = run.result;
+  result = map_log(logs.log, arguments.settings.mapping, observer, sink, state.get());
   observer.finish();
   if (interrupted() && result.placed().empty()) throw Interrupted();
   if (result.interrupted) print_interrupted(logs, result);
   warnings.insert(warnings.end(), observer.warnings().begin(), observer.warnings().end());
   costs.milestones = observer.milestones();
-  return result;
+  if (arguments.settings.walls.align_walls) {
+    run.notes.walls = align_walls(logs.log, arguments.settings.mapping.returns, result.fragments);
+  }
+  return run;
 }
 
 /// From here on, the sweeps are as if all beams of one had been sent at once.
@@ -53,19 +63,19 @@ std::vector<SweepVerdict> straighten(const MapArguments& arguments, LogSet& logs
 }
 
 /// Maps the logs, and writes the trace meanwhile if one is wanted.
-MapResult map_and_trace(const LogSet& logs, const MapArguments& arguments, std::vector<std::string>& warnings,
-                        RunCosts& costs, OutputSet& outputs) {
+MapRun map_and_trace(const LogSet& logs, const MapArguments& arguments, std::vector<std::string>& warnings,
+                     RunCosts& costs, OutputSet& outputs) {
   if (arguments.trace_path.empty()) return map_with_progress(logs, arguments, nullptr, warnings, costs);
   const MapSettings& settings = arguments.settings;
   std::vector<std::string> paths;
   for (const LogSource& log : arguments.logs) paths.push_back(log.path);
-  MapResult result;
+  MapRun run;
   outputs.add(arguments.trace_path, [&](const std::string& path) {
     TraceFile trace(path, {paths, logs.log, settings.mapping, settings.reading, settings.selection});
-    result = map_with_progress(logs, arguments, &trace, warnings, costs);
-    trace.commit(result);
+    run = map_with_progress(logs, arguments, &trace, warnings, costs);
+    trace.commit(run.result);
   });
-  return result;
+  return run;
 }
 
 int exit_code(const LogSet& logs, const MapResult& result, bool was_interrupted) {
@@ -93,12 +103,13 @@ int run_map(const MapArguments& arguments) {
   const Stopwatch mapping;
   const std::vector<SweepVerdict> sweeps = straighten(arguments, logs, warnings);
   OutputSet outputs;
-  const MapResult result = map_and_trace(logs, arguments, warnings, costs, outputs);
+  MapRun run = map_and_trace(logs, arguments, warnings, costs, outputs);
+  const MapResult& result = run.result;
   costs.map_s = mapping.seconds();
   require_a_map(arguments, result);
 
   const Stopwatch writing;
-  prepare_outputs(arguments, logs, result, outputs);
+  run.notes.drawn = prepare_outputs(arguments, logs, result, outputs);
   costs.write_s = writing.seconds();
   costs.wall_s = total.seconds();
   costs.cpu_s = cpu_seconds();
@@ -106,13 +117,13 @@ int run_map(const MapArguments& arguments) {
   if (!arguments.report_path.empty()) {
     outputs.add_text(arguments.report_path,
                      json_report({logs.files, logs.log, result, settings.mapping, settings.reading, settings.selection,
-                                  settings.grid, warnings, costs, sweeps}));
+                                  settings.grid, warnings, costs, settings.walls, run.notes.walls, run.notes.drawn, sweeps}));
   }
   outputs.commit(IfInterrupted::kWriteAll);
   const bool was_interrupted = interrupted();  // what is told and the exit code say the same, whatever comes now
   if (was_interrupted && !result.interrupted) print_lines("", {"interrupted while writing; the map is whole"}, 1);
   print_sweeps(arguments, logs, sweeps);
-  print_summary(arguments, logs, result, warnings, costs);
+  print_summary(arguments, logs, result, run.notes, warnings, costs);
   return exit_code(logs, result, was_interrupted);
 }
 

@@ -68,10 +68,12 @@ void check_output_paths(const MapArguments& arguments) {
   check_fragments_folder(arguments.fragments_folder, paths, arguments.force);
 }
 
-void prepare_outputs(const MapArguments& arguments, const LogSet& logs, const MapResult& result, OutputSet& outputs) {
+std::vector<DrawnFragment> prepare_outputs(const MapArguments& arguments, const LogSet& logs, const MapResult& result,
+                                           OutputSet& outputs) {
   const std::vector<PlacedPosition>& placed = result.placed();
   const MapSettings& settings = arguments.settings;
   const GridMap map = build_grid_map(logs.log, placed, settings.mapping.returns, settings.grid);
+  std::vector<DrawnFragment> drawn{{result.largest_fragment, map.num_returns, map.num_outside}};
   add_map(arguments.map_path, map, settings.drawing.draw_path ? &placed : nullptr, outputs);
   const auto for_each = [&](const std::string& path, const auto& add) {
     for_each_log(path, arguments, logs, result, add);
@@ -88,7 +90,8 @@ void prepare_outputs(const MapArguments& arguments, const LogSet& logs, const Ma
   for_each(arguments.motions_path, [&](std::size_t, const std::string& path, const auto& part) {
     outputs.add_text(path, motion_lines(motions_of(result, part)));
   });
-  if (!arguments.fragments_folder.empty()) add_fragments(arguments, logs, result, outputs);
+  if (!arguments.fragments_folder.empty()) add_fragments(arguments, logs, result, outputs, drawn);
+  return drawn;
 }
 
 }  // namespace shapemap::cli

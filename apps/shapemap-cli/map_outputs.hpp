@@ -8,6 +8,7 @@
 #include "arguments.hpp"
 #include "log_set.hpp"
 #include "output_set.hpp"
+#include "shapemap/io/report.hpp"
 
 namespace shapemap::cli {
 
@@ -21,7 +22,8 @@ std::vector<std::string> output_paths(const MapArguments& arguments);
 void check_output_paths(const MapArguments& arguments);
 
 /// Draws the map and prepares the files that were asked for, except the trace, which is
-/// written while mapping, and the report, which is made last.
-void prepare_outputs(const MapArguments& arguments, const LogSet& logs, const MapResult& result, OutputSet& outputs);
+/// written while mapping, and the report, which is made last. Says what the pictures show.
+std::vector<DrawnFragment> prepare_outputs(const MapArguments& arguments, const LogSet& logs, const MapResult& result,
+                                           OutputSet& outputs);
 
 }  // namespace shapemap::cli

@@ -126,6 +126,42 @@ void print_logs(const LogSet& logs, const MapResult& result) {
   }
 }
 
+void print_outside(const std::vector<DrawnFragment>& drawn) {
+  std::size_t outside = 0;
+  std::size_t returns = 0;
+  std::size_t pictures = 0;
+  for (const DrawnFragment& fragment : drawn) {
+    if (&fragment != &drawn.front() && fragment.num_outside > 0) {
+      outside += fragment.num_outside;
+      returns += fragment.num_returns;
+      ++pictures;
+    }
+  }
+  const auto text = [](std::size_t some, std::size_t all, const std::string& of_what) {
+    return std::to_string(some) + " of " + counted(all, "return") + (some == 1 ? " lies" : " lie") + " outside of " +
+           of_what + "; --draw-all draws them";
+  };
+  if (!drawn.empty() && drawn.front().num_outside > 0) {
+    print_line(text(drawn.front().num_outside, drawn.front().num_returns, "the picture"));
+  }
+  if (outside > 0) print_line(text(outside, returns, counted(pictures, "fragment") + "' pictures"));
+}
+
+void print_walls(const MapNotes& notes, const MapResult& result) {
+  if (notes.walls.empty() || result.largest_fragment < 0) return;
+  const WallDirection& walls = notes.walls.at(static_cast<std::size_t>(result.largest_fragment));
+  char text[200];
+  if (walls.is_dominant()) {
+    std::snprintf(text, sizeof text, "turned by %.2f degrees, so that %.0f %% of the walls are straight",
+                  walls.turn_rad() / kDegree, 100.0 * walls.share);
+  } else {
+    std::snprintf(text, sizeof text,
+                  "not turned: no direction of walls dominates (the best has %.0f %% of them, another %.0f %%)",
+                  100.0 * walls.share, 100.0 * walls.rival_share);
+  }
+  print_line(text);
+}
+
 void print_details(const LogSet& logs, const RunCosts& costs, const StageTimes& times) {
   const std::vector<LogPart> parts = parts_of(logs.log);
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -181,7 +217,7 @@ void print_interrupted(const LogSet& logs, const MapResult& result) {
   print_line("interrupted " + where + "; writing the map so far (once more: leave at once, with nothing written)");
 }
 
-void print_summary(const MapArguments& arguments, const LogSet& logs, const MapResult& result,
+void print_summary(const MapArguments& arguments, const LogSet& logs, const MapResult& result, const MapNotes& notes,
                    const std::vector<std::string>& warnings, const RunCosts& costs) {
   if (arguments.verbosity == Verbosity::kQuiet) return;
   const bool verbose = arguments.verbosity == Verbosity::kVerbose;
@@ -194,6 +230,8 @@ void print_summary(const MapArguments& arguments, const LogSet& logs, const MapR
   print_uncertain(result);
   print_contradicting(logs, result, max_listed);
   print_logs(logs, result);
+  print_walls(notes, result);
+  print_outside(notes.drawn);
   print_line(result_text(arguments, result, costs.wall_s));
 }
 

@@ -6,10 +6,17 @@
 
 #include "arguments.hpp"
 #include "log_set.hpp"
+#include "shapemap/io/report.hpp"
 #include "shapemap/map/deskew.hpp"
 
 /// What a run says about itself on the console.
 namespace shapemap::cli {
+
+/// What is said of a map beside where its positions are.
+struct MapNotes {
+  std::vector<WallDirection> walls;  ///< of each fragment; empty when they were not asked for
+  std::vector<DrawnFragment> drawn;  ///< the map's first
+};
 
 /// Positions that have no place in the map.
 std::vector<std::string> unplaced_lines(const LogSet& logs, const MapResult& result);
@@ -21,7 +28,7 @@ void print_sweeps(const MapArguments& arguments, const LogSet& logs, const std::
 void print_interrupted(const LogSet& logs, const MapResult& result);
 
 /// All of it, once the map is written.
-void print_summary(const MapArguments& arguments, const LogSet& logs, const MapResult& result,
+void print_summary(const MapArguments& arguments, const LogSet& logs, const MapResult& result, const MapNotes& notes,
                    const std::vector<std::string>& warnings, const RunCosts& costs);
 
 }  // namespace shapemap::cli

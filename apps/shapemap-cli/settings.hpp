@@ -5,6 +5,7 @@
 #include "shapemap/io/log_file.hpp"
 #include "shapemap/io/log_selection.hpp"
 #include "shapemap/map/mapping_options.hpp"
+#include "shapemap/map/wall_direction.hpp"
 
 namespace shapemap::cli {
 
@@ -22,6 +23,7 @@ struct MapSettings {
   LogReadOptions reading;
   SelectionOptions selection;
   MappingOptions mapping;
+  WallOptions walls;
   GridMapOptions grid;
   DrawOptions drawing;
 
@@ -30,6 +32,7 @@ struct MapSettings {
     visit("Reading", self.reading);
     visit("Selection", self.selection);
     MappingOptions::groups(self.mapping, visit);
+    visit("Walls", self.walls);
     visit("Map", self.grid);
     visit("Drawing", self.drawing);
   }

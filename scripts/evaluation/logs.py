@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import re
 import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
@@ -23,7 +24,8 @@ from shapemap_sim.poses import Array
 from .datasets import WITH_POSES, DatasetError, LogSpec
 from .relations import RelationFile, ScanIndex, read_relations
 
-RECORDINGS = (".bag", ".dat.gz", ".txt.gz", ".dat")  # what scripts/convert_logs.py reads
+# What scripts/convert_logs.py reads.
+RECORDINGS = (".bag", ".bag.gz", ".db3", ".mcap", ".csv", ".csv.gz", ".dat.gz", ".txt.gz", ".dat")
 
 
 @dataclass(frozen=True)
@@ -110,7 +112,8 @@ def checksum(text: str, reference: Array | None, relations: list[RelationFile]) 
 
 
 def renumbered(text: str, every: int = 1, first: int = 0) -> tuple[list[float], str]:
-    """The times of all scans or positions, and the log of those that are used with 1, 2, 3 ... instead."""
+    """The times of all scans or positions, and the log of those that are used with 1, 2, 3 ... instead. What a scan says
+    of the times of its beams keeps its share of the usual time between scans."""
     times: list[float] = []
     lines: list[str] = []
     num_used, used = 0, True
@@ -126,9 +129,19 @@ def renumbered(text: str, every: int = 1, first: int = 0) -> tuple[list[float], 
                 line = " ".join(words)
         if used or not (words and words[0] in (*_TIME_FIELDS, "scan")):
             lines.append(line)
-    return times, "\n".join(lines) + "\n"
+    steps = np.diff(np.asarray(times))
+    usual_s = float(np.median(steps[steps > 0.0])) * every if (steps > 0.0).any() else 1.0
+    return times, "\n".join(with_beam_times(line, usual_s) for line in lines) + "\n"
 
 
+def with_beam_times(line: str, seconds: float) -> str:
+    """A line of our text format with the times of beams in units of `seconds`."""
+    if not line.startswith(("sensor ", "scan ")):
+        return line
+    return _BEAM_TIMES.sub(lambda found: f"{found[1]} {float(found[2]) / seconds:.9g}", line)
+
+
+_BEAM_TIMES = re.compile(r"\b(time|time_step) ([-+.0-9eE]+)")
 _TIME_FIELDS: dict[str, Callable[[list[str]], int]] = {
     "FLASER": lambda words: 2 + int(words[1]) + 6,
     "position": lambda words: 1,
@@ -176,10 +189,10 @@ def convert_recording(path: Path, angle_step_deg: float | None, made: Path) -> N
     step = [] if angle_step_deg is None else [f"--angle-step-deg={angle_step_deg}"]
     arguments = convert_logs.parse_arguments([str(path), str(made), *step])
     try:
-        recording, _ = convert_logs.read(path, arguments)
+        log = convert_logs.read(path, arguments)
     except convert_logs.UnknownLogError as error:
         raise DatasetError(str(error)) from None
-    write_whole(made, convert_logs.text_of(replace(recording, references=None), path.name))
+    write_whole(made, convert_logs.text_of(replace(log, references=None), path.name))
 
 
 def convert_rawlog(path: Path, made: Path, cli: Path) -> None:

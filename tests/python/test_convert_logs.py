@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import gzip
+import os
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -40,54 +42,20 @@ def test_poses_become_references_and_a_line_cut_short_is_left_out(
     source = tmp_path / "vacuum.txt"
     source.write_text("1000 -2000 1.5 0 500 6003\n1100 -2000 1.4 400 500 600\n1200 -2000 1.4 40\n", encoding="utf-8")
     log = converted(source, tmp_path, "--angle-step-deg=-0.5")
-    assert "left out 1 lines" in capsys.readouterr().err
+    assert "left out 1 line that" in capsys.readouterr().err
     assert log.map_from_robot is not None
     np.testing.assert_allclose(log.map_from_robot, [[1.0, -2.0, 1.5], [1.1, -2.0, 1.4]], atol=1e-6)
     np.testing.assert_allclose(np.rad2deg(log.beam_angles_rad), [0.5, 0.0, -0.5])  # clockwise
     np.testing.assert_array_equal(log.ranges[:, 0], [[np.nan, 0.5, np.nan], [0.4, 0.5, 0.6]])
 
 
-def write_bag(path: Path, topics: list[str]) -> None:
-    """A scan with three beams on each topic."""
-    rosbag1 = pytest.importorskip("rosbags.rosbag1")
-    typesys = pytest.importorskip("rosbags.typesys")
-    store = typesys.get_typestore(typesys.Stores.ROS1_NOETIC)
-    types = store.types
-    with rosbag1.Writer(path) as bag:
-        for topic in topics:
-            connection = bag.add_connection(topic, "sensor_msgs/msg/LaserScan", typestore=store)
-            for k in range(2):
-                stamp = types["builtin_interfaces/msg/Time"](sec=100 + k, nanosec=500_000_000)
-                scan = types["sensor_msgs/msg/LaserScan"](
-                    header=types["std_msgs/msg/Header"](seq=k, stamp=stamp, frame_id="laser"),
-                    angle_min=-0.5,
-                    angle_max=0.5,
-                    angle_increment=0.5,
-                    time_increment=0.0,
-                    scan_time=0.1,
-                    range_min=0.02,
-                    range_max=5.6,
-                    ranges=np.array([1.0, np.inf, 2.0 + k], dtype=np.float32),
-                    intensities=np.array([], dtype=np.float32),
-                )
-                bag.write(connection, (100 + k) * 10**9, store.serialize_ros1(scan, "sensor_msgs/msg/LaserScan"))
-
-
-def test_bag(tmp_path: Path) -> None:
-    write_bag(tmp_path / "walk.bag", ["/scan"])
-    log = converted(tmp_path / "walk.bag", tmp_path)
-    np.testing.assert_allclose(log.timestamps_s, [0.0, 1.0])
-    np.testing.assert_allclose(log.beam_angles_rad, [-0.5, 0.0, 0.5], atol=1e-5)
-    np.testing.assert_array_equal(log.ranges[:, 0], [[1.0, np.nan, 2.0], [1.0, np.nan, 3.0]])
-    assert log.max_range_m == pytest.approx(5.6)
-
-
-def test_bag_with_two_lasers_needs_a_topic(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    bag = tmp_path / "walk.bag"
-    write_bag(bag, ["/back", "/front"])
-    assert convert_logs.main([str(bag), str(tmp_path / "out.nist")]) == 1
-    assert "found /back, /front" in capsys.readouterr().err
-    assert len(converted(bag, tmp_path, "--topic", "/back").ranges) == 2
+def test_a_log_from_a_pipe(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    writer = threading.Thread(target=pipe.write_text, args=("1000 0 0 500 600\n",))
+    writer.start()
+    assert converted(pipe, tmp_path, "--angle-step-deg=1").ranges.shape == (1, 1, 2)
+    writer.join()
 
 
 @pytest.mark.parametrize("text", ["", "FLASER 3 1 2 3\n", "1 2 3 4 5\n"])

@@ -120,6 +120,16 @@ def test_positions_of_a_scan_log_are_left_out_with_their_scans() -> None:
     assert kept == "shapemap-scans 1\nsensor s\nposition 1.0\nscan a\nscan b\n"
 
 
+def test_times_of_beams_keep_their_share_of_the_time_between_scans() -> None:
+    scans = "".join(f"position {0.2 * i}\nscan ring heading 0 time 0.02 ranges 1 2\n" for i in range(4))
+    text = f"shapemap-scans 2\nsensor ring beams 2 angle_step 1 time_step 0.001\n{scans}"
+    _, kept = renumbered(text)
+    assert "time_step 0.005\n" in kept
+    assert kept.count(" time 0.1 ranges 1 2\n") == 4
+    _, thinned = renumbered(text, 2)
+    assert "time_step 0.0025\n" in thinned
+
+
 def test_the_checksum_is_that_of_readings_and_references(tmp_path: Path) -> None:
     log = line_log(tmp_path)
     again = line_log(tmp_path)

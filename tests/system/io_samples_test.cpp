@@ -116,7 +116,7 @@ TEST(BareSamples, AreReadWithTheirGeometryGiven) {
   EXPECT_THAT(test::input_error(path.string()), testing::HasSubstr("--fov-deg"));
   LogReadOptions options;
   options.fov_rad = 240 * kDegree;
-  options.range_unit = LengthUnit::kMillimetre;
+  options.range_unit = RangeUnit::kMillimetre;
   EXPECT_EQ(read_log(path.string(), LogFormat::kAuto, options).positions.size(), 756U);
 }
 

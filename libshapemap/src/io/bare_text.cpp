@@ -9,12 +9,6 @@ namespace {
 
 constexpr const char* kLabel = "laser";
 
-double metres_per(LengthUnit unit) {
-  if (unit == LengthUnit::kMillimetre) return 0.001;
-  if (unit == LengthUnit::kCentimetre) return 0.01;
-  return 1.0;
-}
-
 class BareReader {
  public:
   BareReader(ByteSource& source, const LogReadOptions& options) : source_(source), lines_(source), options_(options) {
@@ -52,7 +46,7 @@ class BareReader {
     scan.ranges_m.reserve(num_beams);
     for (std::size_t i = 0; i < num_beams; ++i) {
       const std::string_view word = words.next();
-      const std::optional<float> range_m = parse_range(word, metres_per(options_.range_unit));
+      const std::optional<float> range_m = parse_range(word, 1.0);
       if (!range_m) throw lines_.error("reading " + std::to_string(i + 1) + " is '" + std::string(word) + "'");
       scan.ranges_m.push_back(*range_m);
     }

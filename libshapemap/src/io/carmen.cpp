@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CARMEN logs. Only what is needed is parsed: pose and odometry fields are stepped over as words, whatever they hold.
+// CARMEN logs. Of pose and odometry fields, which may hold anything, only the heading is looked at.
+#include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,19 +11,25 @@
 #include "log_formats.hpp"
 #include "mount_pose.hpp"
 #include "no_return_level.hpp"
+#include "shapemap/scan/beam_angles.hpp"
 #include "text.hpp"
 
 namespace shapemap {
 namespace {
 
-constexpr std::size_t kFlaserPoseWords = 6;       // x y theta odom_x odom_y odom_theta
-constexpr std::size_t kRobotLaserPoseWords = 11;  // laser pose, robot pose, tv rv forward_safety side_safety turn_axis
+/// The words between readings and timestamp, and the first of three that say what the robot took for its own motion.
+struct PoseWords {
+  std::size_t count = 0;
+  std::size_t odometry_at = 0;
+};
+constexpr PoseWords kFlaserPoses{6, 3};       // x y theta odom_x odom_y odom_theta
+constexpr PoseWords kRobotLaserPoses{11, 3};  // laser pose, robot pose, tv rv forward_safety side_safety turn_axis
 
 /// Readings are only taken when the line has them, so that a wrong count cannot ask for memory.
 std::vector<float> read_ranges(Words& words, const LineReader& lines) {
   const std::string_view word = words.next();
   const std::optional<long long> count = parse_count(word);
-  if (!count || *count < 1) {
+  if (!count || *count < 0) {
     throw lines.error("'" + std::string(word) + "' where the number of readings should be");
   }
   const std::size_t num_left = words.count_left();
@@ -47,6 +55,12 @@ double read_finite(Words& words, const LineReader& lines, const char* what) {
   if (!value || !std::isfinite(*value)) throw lines.error(std::string(what) + " is '" + std::string(word) + "'");
   return *value;
 }
+
+/// What follows the readings of a line.
+struct PosesAndTime {
+  std::optional<double> heading_rad;
+  double timestamp_s = 0.0;
+};
 
 class CarmenReader {
  public:
@@ -101,7 +115,7 @@ class CarmenReader {
     scan.ranges_m = read_ranges(words, lines_);
     set_flaser_angles(scan);
     scan.sensor_label = "FLASER";
-    add(std::move(scan), read_timestamp(words, kFlaserPoseWords));
+    add(std::move(scan), read_poses(words, kFlaserPoses));
   }
 
   void set_flaser_angles(SubScan& scan) {
@@ -124,29 +138,39 @@ class CarmenReader {
   void read_robot_laser(Words& words) {
     SubScan scan;
     words.skip(1);  // laser type
-    scan.first_angle_rad = read_finite(words, lines_, "the start angle");
+    const double start_rad = read_finite(words, lines_, "the start angle");
     const double fov_rad = read_finite(words, lines_, "the field of view");
-    scan.angle_step_rad = read_finite(words, lines_, "the angular resolution");
+    const double resolution_rad = read_finite(words, lines_, "the angular resolution");
     scan.max_range_m = std::max(0.0, read_finite(words, lines_, "the maximum range"));
     words.skip(2);  // accuracy, remission mode
     scan.ranges_m = read_ranges(words, lines_);
     scan.sensor_label = "ROBOTLASER1";
 
-    const double num_steps = static_cast<double>(scan.ranges_m.size()) - 1.0;
-    if (scan.angle_step_rad == 0.0 && num_steps > 0.0) scan.angle_step_rad = fov_rad / num_steps;
-    if (scan.angle_step_rad == 0.0) throw lines_.error("the angular resolution and the field of view are 0");
-    const double excess_rad = std::abs(scan.angle_step_rad) * num_steps - std::abs(fov_rad);
-    if (fov_rad != 0.0 && std::abs(excess_rad) > 2 * std::abs(scan.angle_step_rad)) warn_of_angles();
-
+    set_robot_laser_angles(start_rad, fov_rad, resolution_rad, scan);
     skip_remissions(words);
-    add(std::move(scan), read_timestamp(words, kRobotLaserPoseWords));
+    add(std::move(scan), read_poses(words, kRobotLaserPoses));
   }
 
-  void warn_of_angles() {
+  void set_robot_laser_angles(double start_rad, double fov_rad, double resolution_rad, SubScan& scan) {
+    StatedAngles stated;
+    stated.first_rad = start_rad;
+    if (resolution_rad != 0.0) stated.step_rad = resolution_rad;
+    if (fov_rad != 0.0) stated.last_rad = start_rad + (resolution_rad < 0.0 ? -std::abs(fov_rad) : fov_rad);
+    const std::optional<EvenBeams> beams = even_beams(stated, scan.ranges_m.size());
+    if (!beams) {
+      throw lines_.error(
+          "neither the angular resolution nor the field of view says where the beams point, expected "
+          "one that is not 0 and makes at most a full turn");
+    }
+    scan.first_angle_rad = beams->first_rad;
+    scan.angle_step_rad = beams->step_rad;
+    if (beams->source != AngleSource::kAsStated) warn_of_angles(beams->source);
+  }
+
+  void warn_of_angles(AngleSource used) {
     if (!warned_of_angles_) {
-      log_.warnings.push_back(lines_.where() +
-                              ": field of view and angular resolution contradict each other; the "
-                              "resolution is used");
+      log_.warnings.push_back(lines_.where() + ": field of view and angular resolution contradict each other; the " +
+                              (used == AngleSource::kStep ? "resolution" : "field of view") + " is used");
     }
     warned_of_angles_ = true;
   }
@@ -164,20 +188,34 @@ class CarmenReader {
     }
   }
 
-  double read_timestamp(Words& words, std::size_t num_pose_words) {
-    if (words.skip(num_pose_words) < num_pose_words) {
-      throw lines_.error("too few values: expected " + std::to_string(num_pose_words) +
+  /// The words may hold anything. Odometry of zeros is how logs say that there is none.
+  PosesAndTime read_poses(Words& words, const PoseWords& poses) {
+    PosesAndTime read;
+    std::array<std::optional<double>, 3> odometry;
+    std::size_t num_words = words.skip(poses.odometry_at);
+    for (std::optional<double>& value : odometry) {
+      const std::string_view word = words.next();
+      if (!word.empty()) ++num_words;
+      value = parse_number(word);
+    }
+    num_words += words.skip(poses.count - poses.odometry_at - odometry.size());
+    if (num_words < poses.count) {
+      throw lines_.error("too few values: expected " + std::to_string(poses.count) +
                          " pose fields and a timestamp after the readings");
     }
-    return read_finite(words, lines_, "the timestamp");
+    const bool is_all_zero = odometry[0] == 0.0 && odometry[1] == 0.0 && odometry[2] == 0.0;
+    if (odometry[2] && std::isfinite(*odometry[2]) && !is_all_zero) read.heading_rad = wrap_angle(*odometry[2]);
+    read.timestamp_s = read_finite(words, lines_, "the timestamp");
+    return read;
   }
 
-  void add(SubScan scan, double timestamp_s) {
+  void add(SubScan scan, const PosesAndTime& poses) {
     scan.robot_from_sensor = mount_;
     mount_ = MountPose{};
     if (!joins_previous_ || log_.positions.empty()) {
       log_.positions.emplace_back();
-      log_.positions.back().timestamp_s = timestamp_s;
+      log_.positions.back().timestamp_s = poses.timestamp_s;
+      log_.positions.back().recorded_heading_rad = poses.heading_rad;
     }
     joins_previous_ = false;
     log_.positions.back().sub_scans.push_back(std::move(scan));

@@ -3,6 +3,7 @@
 
 #include "log_formats.hpp"
 #include "shapemap/core/errors.hpp"
+#include "shapemap/scan/timestamps.hpp"
 
 namespace shapemap {
 namespace {
@@ -48,9 +49,9 @@ void finish_log(const ByteSource& source, Log& log) {
   }
 }
 
-Log read_log(const std::string& path, LogFormat format, const LogReadOptions& options) {
-  validate(options);
-  ByteSource source(path);
+namespace {
+
+Log read_as(ByteSource& source, LogFormat format, const LogReadOptions& options) {
   switch (format == LogFormat::kAuto ? recognise_log_format(source) : format) {
     case LogFormat::kRawlog:
       return read_rawlog(source, options);
@@ -61,7 +62,39 @@ Log read_log(const std::string& path, LogFormat format, const LogReadOptions& op
     case LogFormat::kAuto:
       break;
   }
-  throw InputError(path + ": unknown log format");
+  throw InputError(source.path() + ": unknown log format");
+}
+
+/// Readings of a log that does not say their unit become metres.
+void settle_range_unit(const std::string& path, RangeUnit unit, Log& log) {
+  if (log.states_range_unit) return;
+  const bool is_recognised = unit == RangeUnit::kAuto;
+  if (is_recognised) unit = recognised_range_unit(log);
+  scale_ranges(log, unit);
+  if (!is_recognised || unit == RangeUnit::kMetre) return;
+  log.warnings.push_back(path + ": the readings are taken for " +
+                         (unit == RangeUnit::kMillimetre ? "millimetres" : "centimetres") +
+                         ", since they are too long for metres; --range-unit says otherwise");
+}
+
+void turn_upside_down(Log& log) {
+  for (Position& position : log.positions) {
+    for (SubScan& scan : position.sub_scans) {
+      scan.robot_from_sensor.roll_rad = wrap_angle(scan.robot_from_sensor.roll_rad + kPi);
+    }
+  }
+}
+
+}  // namespace
+
+Log read_log(const std::string& path, LogFormat format, const LogReadOptions& options) {
+  validate(options);
+  ByteSource source(path);
+  Log log = read_as(source, format, options);
+  settle_range_unit(path, options.range_unit, log);
+  for (const std::string& line : mend_timestamps(log.positions).lines()) log.warnings.push_back(path + ": " + line);
+  if (options.upside_down) turn_upside_down(log);
+  return log;
 }
 
 std::string what_is_lost(const Log& log, LogFormat format) {

@@ -24,11 +24,14 @@ class FieldReader {
   bool read_shared(std::string_view field, NistHeader& header) {
     SubScan& scan = header.scan;
     if (field == "first_angle") {
-      header.angles.first_rad = angle_rad("first_angle");
+      header.angles.first_rad = any_number("first_angle") * units_.radians_per_unit;
+      header.has_own_angles = true;
     } else if (field == "angle_step") {
       header.angles.step_rad = any_number("angle_step") * units_.radians_per_unit;
+      header.has_own_angles = true;
     } else if (field == "last_angle") {
       header.angles.last_rad = any_number("last_angle") * units_.radians_per_unit;
+      header.has_own_angles = true;
     } else if (field == "max_range") {
       scan.max_range_m = positive_or_unknown(any_number("max_range") * units_.metres_per_unit);
     } else if (field == "min_range") {
@@ -60,7 +63,8 @@ class FieldReader {
     std::string_view word = words_.next();
     for (; !word.empty() && !is_list(word); word = words_.next()) {
       const std::optional<double> value = parse_number(word);
-      if (!value) throw lines_.error(what + " " + std::to_string(values.size() + 1) + " is '" + std::string(word) + "'");
+      if (!value)
+        throw lines_.error(what + " " + std::to_string(values.size() + 1) + " is '" + std::string(word) + "'");
       values.push_back(*value * unit);
     }
     after_list_ = word;
@@ -139,6 +143,11 @@ void check_num_readings(const NistHeader& sensor, const SubScan& scan, const Lin
 
 void set_even_angles(const NistHeader& header, SubScan& scan, const LineReader& lines, NistOddities& oddities) {
   const std::optional<EvenBeams> beams = even_beams(header.angles, scan.ranges_m.size());
+  if (!beams && header.has_own_angles) {
+    ++oddities.num_without;
+    for (auto* readings : {&scan.ranges_m, &scan.beam_times_s, &scan.intensities}) readings->clear();
+    return;
+  }
   if (!beams) {
     throw lines.error("neither angle_step nor last_angle says where the " + std::to_string(scan.ranges_m.size()) +
                       " beams point, expected a step that is not 0 and at most a full turn");
@@ -149,7 +158,7 @@ void set_even_angles(const NistHeader& header, SubScan& scan, const LineReader& 
   if (beams->source == AngleSource::kLimits) ++oddities.num_by_limits;
 }
 
-void set_lists(Lists lists, SubScan& scan, const LineReader& lines) {
+void set_lists(const Lists& lists, SubScan& scan, const LineReader& lines) {
   if (lists.times_s) {
     require_as_many(lists.times_s->size(), "times", scan, lines);
     scan.beam_times_s.assign(lists.times_s->begin(), lists.times_s->end());
@@ -160,7 +169,7 @@ void set_lists(Lists lists, SubScan& scan, const LineReader& lines) {
   }
   if (lists.angles_rad) {
     require_as_many(lists.angles_rad->size(), "angles", scan, lines);
-    set_beam_angles(scan, std::move(*lists.angles_rad));
+    set_beam_angles(scan, *lists.angles_rad);
   }
 }
 
@@ -192,6 +201,7 @@ NistHeader read_nist_sensor(Words& words, const LineReader& lines, const NistUni
 SubScan read_nist_scan(Words& words, const LineReader& lines, const NistUnits& units, const NistHeader& sensor,
                        NistOddities& oddities) {
   NistHeader header = sensor;
+  header.has_own_angles = false;
   SubScan& scan = header.scan;
   FieldReader fields(words, lines, units);
   Lists lists;
@@ -218,8 +228,8 @@ SubScan read_nist_scan(Words& words, const LineReader& lines, const NistUnits& u
   }
   if (!has_ranges) throw lines.error("expected 'ranges' after the heading");
   check_num_readings(sensor, scan, lines);
+  set_lists(lists, scan, lines);
   if (!lists.angles_rad) set_even_angles(header, scan, lines, oddities);
-  set_lists(std::move(lists), scan, lines);
   return std::move(scan);
 }
 

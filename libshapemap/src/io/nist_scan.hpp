@@ -24,6 +24,7 @@ struct NistHeader {
   SubScan scan;                          ///< without readings
   StatedAngles angles;                   ///< of evenly spaced beams
   std::optional<std::size_t> num_beams;  ///< nothing: any
+  bool has_own_angles = false;           ///< something was said of them on this very line
 };
 
 /// Reads a `sensor` line from behind its keyword on. Throws InputError.
@@ -33,6 +34,7 @@ NistHeader read_nist_sensor(Words& words, const LineReader& lines, const NistUni
 struct NistOddities {
   std::size_t num_by_step = 0;    ///< step and last angle contradict each other; the step is used
   std::size_t num_by_limits = 0;  ///< the step cannot be; first and last angle are used
+  std::size_t num_without = 0;    ///< what a scan itself says of its angles cannot be; it is left without readings
 };
 
 /// Reads a `scan` line from behind the sensor's name on; what it does not say is as `sensor` says. Throws InputError.

@@ -80,6 +80,7 @@ class NistReader {
     else
       throw lines_.error("unit of angle is '" + std::string(angle) + "', expected deg or rad");
     expect_end(words, lines_);
+    log_.states_range_unit = true;
   }
 
   double number(Words& words, const char* what) {
@@ -128,6 +129,7 @@ class NistReader {
     };
     warn(oddities_.num_by_step, "have an angle_step and a last_angle that contradict each other; the step is used");
     warn(oddities_.num_by_limits, "have an angle_step that cannot be; first and last angle are used");
+    warn(oddities_.num_without, "have angles that cannot be, and are left without readings");
   }
 
   /// A position that was announced but has no scan, be it that its laser was not asked for or that the file ends.

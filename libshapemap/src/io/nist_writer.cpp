@@ -36,14 +36,17 @@ struct Sensor {
   }
 };
 
+/// What angles are divided by. Degrees are for people; they do not always read back as the same radians.
+double angle_unit_rad(int version) { return version == 1 ? kDegree : 1.0; }
+
 /// The fields of a sensor that a scan does not share with `usual`; of the sensor itself, all that say something.
-std::string header_text(const SubScan& scan, const SubScan& usual) {
+std::string header_text(const SubScan& scan, const SubScan& usual, double unit_rad) {
   std::string text;
   if (scan.is_evenly_spaced() && scan.first_angle_rad != usual.first_angle_rad) {
-    append(text, "first_angle", scan.first_angle_rad / kDegree);
+    append(text, "first_angle", scan.first_angle_rad / unit_rad);
   }
   if (scan.is_evenly_spaced() && scan.angle_step_rad != usual.angle_step_rad) {
-    append(text, "angle_step", scan.angle_step_rad / kDegree);
+    append(text, "angle_step", scan.angle_step_rad / unit_rad);
   }
   if (scan.max_range_m != usual.max_range_m) append(text, "max_range", scan.max_range_m);
   if (scan.min_range_m != usual.min_range_m) append(text, "min_range", scan.min_range_m);
@@ -76,28 +79,28 @@ class Sensors {
     return std::any_of(sensors_.begin(), sensors_.end(), [](const Sensor& sensor) { return sensor.has_any_number; });
   }
 
-  std::string text() const {
+  std::string text(double unit_rad) const {
     std::string text;
     for (const Sensor& sensor : sensors_) {
       const bool any = sensor.has_any_number || sensor.num_beams == 0;
       text += "sensor " + sensor.name + " beams " + (any ? "any" : std::to_string(sensor.num_beams));
-      append(text, "first_angle", sensor.usual.first_angle_rad / kDegree);
-      append(text, "angle_step", sensor.usual.angle_step_rad / kDegree);
+      append(text, "first_angle", sensor.usual.first_angle_rad / unit_rad);
+      append(text, "angle_step", sensor.usual.angle_step_rad / unit_rad);
       SubScan silent = sensor.usual;
       silent.max_range_m = silent.min_range_m = silent.beam_time_step_s = 0.0;
-      text += header_text(sensor.usual, silent);
-      append_mount(text, sensor.usual.robot_from_sensor);
+      text += header_text(sensor.usual, silent, unit_rad);
+      append_mount(text, sensor.usual.robot_from_sensor, unit_rad);
       text += '\n';
     }
     return text;
   }
 
  private:
-  static void append_mount(std::string& text, const MountPose& mount) {
+  static void append_mount(std::string& text, const MountPose& mount, double unit_rad) {
     if (mount == MountPose{}) return;
     text += " mount";
     for (const double length_m : {mount.x_m, mount.y_m, mount.z_m}) append(text, length_m);
-    for (const double angle_rad : {mount.yaw_rad, mount.pitch_rad, mount.roll_rad}) append(text, angle_rad / kDegree);
+    for (const double angle_rad : {mount.yaw_rad, mount.pitch_rad, mount.roll_rad}) append(text, angle_rad / unit_rad);
   }
 
   void declare(const SubScan& scan) {
@@ -130,7 +133,7 @@ class Sensors {
 /// Whether `scan` has something that version 1 of the format cannot say.
 bool needs_version_2(const SubScan& scan, const Sensor& sensor) {
   return !scan.is_evenly_spaced() || scan.start_s != 0.0 || scan.beam_time_step_s > 0.0 || !scan.beam_times_s.empty() ||
-         !scan.intensities.empty() || !header_text(scan, sensor.usual).empty();
+         !scan.intensities.empty() || !header_text(scan, sensor.usual, 1.0).empty();
 }
 
 int version_for(const Log& log, const Sensors& sensors) {
@@ -154,17 +157,12 @@ void append_list(std::string& text, const char* name, const std::vector<Number>&
   }
 }
 
-std::vector<double> in_degrees(std::vector<double> angles_rad) {
-  for (double& angle : angles_rad) angle /= kDegree;
-  return angles_rad;
-}
-
-void append_scan(std::string& text, const SubScan& scan, const Sensor& sensor) {
+void append_scan(std::string& text, const SubScan& scan, const Sensor& sensor, double unit_rad) {
   text += "scan " + sensor.name;
-  append(text, "heading", scan.nominal_heading_rad / kDegree);
+  append(text, "heading", scan.nominal_heading_rad / unit_rad);
   if (scan.start_s != 0.0) append(text, "time", scan.start_s);
-  text += header_text(scan, sensor.usual);
-  append_list(text, "angles", in_degrees(scan.beam_angles_rad));
+  text += header_text(scan, sensor.usual, unit_rad);
+  append_list(text, "angles", scan.beam_angles_rad);
   append_list(text, "times", scan.beam_times_s);
   text += " ranges";
   for (const float range_m : scan.ranges_m) {
@@ -183,18 +181,20 @@ void append_scan(std::string& text, const SubScan& scan, const Sensor& sensor) {
 
 void write_nist(const Log& log, ByteSink& sink) {
   const Sensors sensors(log);
-  sink.write(std::string(kNistName) + " " + std::to_string(version_for(log, sensors)) + "\nunits m deg\n" +
-             sensors.text());
+  const int version = version_for(log, sensors);
+  const double unit_rad = angle_unit_rad(version);
+  sink.write(std::string(kNistName) + " " + std::to_string(version) + "\nunits m " + (version == 1 ? "deg" : "rad") +
+             "\n" + sensors.text(unit_rad));
   for (const Position& position : log.positions) {
     std::string text = "position";
     append(text, position.timestamp_s);
     if (position.reference_pose) {
       append(text, "reference", position.reference_pose->x_m);
       append(text, position.reference_pose->y_m);
-      append(text, position.reference_pose->theta_rad / kDegree);
+      append(text, position.reference_pose->theta_rad / unit_rad);
     }
     text += '\n';
-    for (const SubScan& scan : position.sub_scans) append_scan(text, scan, sensors.of(scan));
+    for (const SubScan& scan : position.sub_scans) append_scan(text, scan, sensors.of(scan), unit_rad);
     sink.write(text);
   }
 }

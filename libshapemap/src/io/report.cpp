@@ -42,6 +42,7 @@ Json options_json(const RunReport& report) {
   add_options(report.reading, all);
   add_options(report.selection, all);
   MappingOptions::groups(report.mapping, [&](const char*, const auto& group) { add_options(group, all); });
+  add_options(report.walls, all);
   add_options(report.grid, all);
   return all;
 }
@@ -183,6 +184,20 @@ Json per_log_json(const Log& log, const std::vector<PlacedPosition>& positions) 
   return list;
 }
 
+Json drawn_json(const RunReport& report, std::size_t fragment) {
+  for (const DrawnFragment& drawn : report.drawn) {
+    if (drawn.fragment != static_cast<int>(fragment)) continue;
+    return {{"num_returns", drawn.num_returns}, {"num_outside", drawn.num_outside}};
+  }
+  return nullptr;
+}
+
+Json walls_json(const RunReport& report, std::size_t fragment) {
+  if (fragment >= report.wall_directions.size()) return nullptr;
+  const WallDirection& walls = report.wall_directions[fragment];
+  return {{"turned_deg", walls.turn_rad() / kDegree}, {"share", walls.share}, {"rival_share", walls.rival_share}};
+}
+
 Json fragments_json(const RunReport& report) {
   const MapResult& result = report.result;
   Json list = Json::array();
@@ -194,7 +209,9 @@ Json fragments_json(const RunReport& report) {
                     {"first_index", positions.front().position_index},
                     {"last_index", positions.back().position_index},
                     {"logs", per_log_json(report.log, positions)},
-                    {"is_map", static_cast<int>(i) == result.largest_fragment}});
+                    {"is_map", static_cast<int>(i) == result.largest_fragment},
+                    {"picture", drawn_json(report, i)},
+                    {"walls", walls_json(report, i)}});
   }
   return list;
 }

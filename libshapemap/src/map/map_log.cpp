@@ -6,6 +6,7 @@
 
 #include "chains.hpp"
 #include "shapemap/core/errors.hpp"
+#include "shapemap/map/mirror_check.hpp"
 #include "shapemap/map/scan_agreement.hpp"
 
 namespace shapemap {
@@ -49,6 +50,11 @@ MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& ob
   judge_scans(log, options.returns, options.agreement, result.fragments);
   result.times.agreement_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.largest_fragment = largest(result.fragments);
+  if (const TurnComparison turns = compare_turns(log, result.placed()); turns.is_mirrored()) {
+    observer.on_warning("the scans seem to be mirrored: of the turns that the log itself records, " +
+                        std::to_string(turns.num_opposite) + " of " +
+                        std::to_string(turns.num_alike + turns.num_opposite) + " go the other way; see --upside-down");
+  }
   return result;
 }
 

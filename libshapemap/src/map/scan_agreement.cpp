@@ -7,13 +7,12 @@
 
 #include "look_grid.hpp"
 #include "shapemap/core/grid_line.hpp"
+#include "shapemap/map/looks.hpp"
 #include "shapemap/map/placed_rays.hpp"
 
 namespace shapemap {
 namespace {
 
-constexpr double kLookStep_m = 0.5;
-constexpr double kLookTurn_rad = 20 * kDegree;
 constexpr double kFarthestCell = 1e8;      // what is farther off is no map, and would not fit the grid's numbers
 constexpr double kBesideSensor_m = 0.5;    // in a doorway, a jamb that is a little off hides half of the view
 constexpr int kBeforeHit = 1;              // cells: a surface is rough, and its range noisy
@@ -40,7 +39,7 @@ class Judge {
         min_looks_(static_cast<std::uint32_t>(options.min_looks)) {}
 
   std::vector<ScanAgreement> run() {
-    const std::vector<std::size_t> starts = starts_of_looks();
+    const std::vector<std::size_t> starts = starts_of_looks(placed_);
     for (std::size_t i = 0; i + 1 < starts.size(); ++i) draw(starts[i], starts[i + 1], number_of(i));
     std::vector<ScanAgreement> all;
     for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
@@ -53,20 +52,6 @@ class Judge {
 
  private:
   static std::uint32_t number_of(std::size_t look) { return static_cast<std::uint32_t>(look + 1); }
-
-  /// Index of the first scan of each look, and the number of scans.
-  std::vector<std::size_t> starts_of_looks() const {
-    std::vector<std::size_t> starts;
-    for (std::size_t i = 0; i < placed_.size(); ++i) {
-      if (!starts.empty()) {
-        const Pose2 step = inverse(placed_[starts.back()].map_from_robot) * placed_[i].map_from_robot;
-        if (is_within(step, kLookStep_m, kLookTurn_rad)) continue;
-      }
-      starts.push_back(i);
-    }
-    starts.push_back(placed_.size());
-    return starts;
-  }
 
   bool is_on_grid(const Point2& p_m) const {
     return p_m.cwiseAbs().maxCoeff() / options_.cell_m < kFarthestCell;  // false for NaN

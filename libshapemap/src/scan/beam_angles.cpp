@@ -12,7 +12,7 @@ namespace shapemap {
 namespace {
 
 constexpr double kTurn_rad = 2.0 * kPi;
-constexpr double kRounding = 1e-3;         // headers hold 32-bit floats, or a few decimals
+constexpr double kRounding = 1e-3;          // headers hold 32-bit floats, or a few decimals
 constexpr double kStepsOfDifference = 1.5;  // a full circle has its first beam twice, once, or not quite
 
 /// The share of a turn that is left for rounding, and for a last beam that closes the circle.

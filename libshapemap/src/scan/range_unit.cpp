@@ -16,6 +16,9 @@ constexpr double kRangeFactor = 4.0;
 constexpr double kUsualRoughness_m = 0.005;
 constexpr double kRoughnessFactor = 2.5;
 
+/// No sensor measures nearer: a smaller limit was in metres.
+constexpr double kLeastMinRange_m = 0.01;
+
 /// So many scans, spread over the log, tell.
 constexpr std::size_t kMostScans = 400;
 
@@ -78,8 +81,7 @@ double metres_per(RangeUnit unit) {
 RangeUnit recognised_range_unit(const Log& log) {
   const Readings readings = readings_of(log);
   if (!(readings.middle > kFarthestMiddle_m)) return RangeUnit::kMetre;
-  const bool is_cm =
-      log_density(readings, RangeUnit::kCentimetre) > log_density(readings, RangeUnit::kMillimetre);
+  const bool is_cm = log_density(readings, RangeUnit::kCentimetre) > log_density(readings, RangeUnit::kMillimetre);
   return is_cm ? RangeUnit::kCentimetre : RangeUnit::kMillimetre;
 }
 
@@ -91,7 +93,7 @@ void scale_ranges(Log& log, RangeUnit unit) {
     for (SubScan& scan : position.sub_scans) {
       for (float& range : scan.ranges_m) range = static_cast<float>(range * scale);
       if (scan.max_range_m >= middle) scan.max_range_m *= scale;
-      if (scan.min_range_m * scale * 100.0 >= 1.0) scan.min_range_m *= scale;
+      if (scan.min_range_m * scale >= kLeastMinRange_m) scan.min_range_m *= scale;
     }
   }
 }

@@ -22,6 +22,31 @@ void sort_by_angle(const SubScan& sub_scan, std::vector<Return>& returns) {
   });
 }
 
+/// Takes readings of one sub-scan to the floor plan, in the robot's frame.
+class BeamPoints {
+ public:
+  explicit BeamPoints(const SubScan& sub_scan)
+      : sub_scan_(sub_scan),
+        robot_from_sensor_(rotation_of(sub_scan.robot_from_sensor)),
+        mount_m_(sub_scan.robot_from_sensor.x_m, sub_scan.robot_from_sensor.y_m) {}
+
+  /// Cosine of the angle between the sensor's z axis and the robot's.
+  double up() const { return robot_from_sensor_(2, 2); }
+
+  Point2 at(std::size_t beam, double range_m) const {
+    const double angle_rad = sub_scan_.beam_angle_rad(beam);
+    const Eigen::Vector3d direction =
+        robot_from_sensor_ * Eigen::Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0.0);
+    const Point2 p_at_heading = mount_m_ + range_m * direction.head<2>();
+    return rotate(p_at_heading, sub_scan_.nominal_heading_rad);
+  }
+
+ private:
+  const SubScan& sub_scan_;
+  Eigen::Matrix3d robot_from_sensor_;
+  Point2 mount_m_;
+};
+
 }  // namespace
 
 bool is_upside_down(const MountPose& robot_from_sensor) { return rotation_of(robot_from_sensor)(2, 2) < 0.0; }
@@ -40,29 +65,40 @@ bool is_return(float range_m, const RangeLimits& limits) {
          range_m < static_cast<float>(limits.max_m);
 }
 
+bool is_open(float range_m, const RangeLimits& limits) {
+  if (!std::isfinite(range_m)) return !(range_m < 0.0F);
+  return limits.max_m < kLongestRange_m && range_m >= static_cast<float>(limits.max_m);
+}
+
 std::vector<Return> returns_in_robot(const SubScan& sub_scan, const ReturnOptions& options) {
-  const Eigen::Matrix3d robot_from_sensor = rotation_of(sub_scan.robot_from_sensor);
-  const double up = robot_from_sensor(2, 2);  // cosine of the angle between the sensor's z axis and the robot's
+  const BeamPoints points(sub_scan);
   std::vector<Return> returns;
-  if (std::abs(up) < std::cos(options.max_mount_tilt_rad)) return returns;
+  if (std::abs(points.up()) < std::cos(options.max_mount_tilt_rad)) return returns;
 
   const RangeLimits limits = range_limits(sub_scan, options);
-  const Point2 mount_m(sub_scan.robot_from_sensor.x_m, sub_scan.robot_from_sensor.y_m);
   returns.reserve(sub_scan.ranges_m.size());
   for (std::size_t beam = 0; beam < sub_scan.ranges_m.size(); ++beam) {
     const float range_m = sub_scan.ranges_m[beam];
-    if (!is_return(range_m, limits)) continue;
-    const double angle_rad = sub_scan.beam_angle_rad(beam);
-    const Eigen::Vector3d direction =
-        robot_from_sensor * Eigen::Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0.0);
-    const Point2 p_at_heading = mount_m + static_cast<double>(range_m) * direction.head<2>();
-    returns.push_back({rotate(p_at_heading, sub_scan.nominal_heading_rad), beam, range_m});
+    if (is_return(range_m, limits)) returns.push_back({points.at(beam, static_cast<double>(range_m)), beam, range_m});
   }
   if (!sub_scan.is_evenly_spaced()) sort_by_angle(sub_scan, returns);
   const bool sorted_clockwise = sub_scan.is_evenly_spaced() && sub_scan.angle_step_rad < 0.0;
-  const bool clockwise_from_above = sorted_clockwise != (up < 0.0);
+  const bool clockwise_from_above = sorted_clockwise != (points.up() < 0.0);
   if (clockwise_from_above) std::reverse(returns.begin(), returns.end());
   return returns;
+}
+
+std::vector<Point2> open_ends_in_robot(const SubScan& sub_scan, const ReturnOptions& options, double length_m) {
+  const BeamPoints points(sub_scan);
+  std::vector<Point2> ends;
+  if (std::abs(points.up()) < std::cos(options.max_mount_tilt_rad)) return ends;
+
+  const RangeLimits limits = range_limits(sub_scan, options);
+  for (std::size_t beam = 0; beam < sub_scan.ranges_m.size(); ++beam) {
+    if (!is_open(sub_scan.ranges_m[beam], limits)) continue;
+    ends.push_back(points.at(beam, std::min(length_m, limits.max_m)));
+  }
+  return ends;
 }
 
 Pose2 robot_from_sensor2(const SubScan& sub_scan) {

@@ -4,15 +4,21 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
+#include <iterator>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 namespace shapemap {
 namespace {
 
+/// Buffers swap neighbours, and busy computers stamp a few scans late; more is a clock that was set.
 constexpr std::ptrdiff_t kMostPlacesSwapped = 3;
+constexpr std::size_t kMostLate = 10;
 
 using Times = std::vector<double>;
+using Order = std::vector<std::size_t>;
 
 Times times_of(const std::vector<Position>& positions) {
   Times times_s;
@@ -23,6 +29,14 @@ Times times_of(const std::vector<Position>& positions) {
 
 bool increases(const Times& times_s) {
   return std::adjacent_find(times_s.begin(), times_s.end(), std::greater_equal<>()) == times_s.end();
+}
+
+/// Whether more than half of them are the same.
+bool say_nothing(Times times_s) {
+  const auto middle = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() / 2);
+  std::nth_element(times_s.begin(), middle, times_s.end());
+  const double usual_s = *middle;
+  return 2 * std::count(times_s.begin(), times_s.end(), usual_s) > static_cast<std::ptrdiff_t>(times_s.size());
 }
 
 /// The middle one of the steps that go forward; a second where none does.
@@ -37,44 +51,109 @@ double usual_step_s(const Times& times_s) {
   return *middle;
 }
 
-/// Sorts positions by time where none moves far; how many moved.
-std::size_t sort_swapped(std::vector<Position>& positions, Times& times_s) {
-  std::vector<std::size_t> order(times_s.size());
+/// The order by time, where no position moves far; else none.
+std::optional<Order> order_by_time(const Times& times_s) {
+  Order order(times_s.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return times_s[a] < times_s[b]; });
-  std::size_t num_moved = 0;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    if (order[i] == i) continue;
-    if (std::abs(static_cast<std::ptrdiff_t>(order[i]) - static_cast<std::ptrdiff_t>(i)) > kMostPlacesSwapped) return 0;
-    ++num_moved;
+    const auto places = static_cast<std::ptrdiff_t>(order[i]) - static_cast<std::ptrdiff_t>(i);
+    if (std::abs(places) > kMostPlacesSwapped) return std::nullopt;
   }
-  if (num_moved == 0) return 0;
+  return order;
+}
+
+/// How different two scans look: the middle one of the differences of their readings.
+double difference_m(const Position& a, const Position& b) {
+  if (a.sub_scans.empty() || b.sub_scans.empty()) return 0.0;
+  const std::vector<float>& of_a = a.sub_scans.front().ranges_m;
+  const std::vector<float>& of_b = b.sub_scans.front().ranges_m;
+  std::vector<double> differences_m;
+  for (std::size_t i = 0; i < std::min(of_a.size(), of_b.size()); ++i) {
+    const double difference = std::abs(static_cast<double>(of_a[i]) - of_b[i]);
+    if (std::isfinite(difference)) differences_m.push_back(difference);
+  }
+  if (differences_m.empty()) return 0.0;
+  const auto middle = differences_m.begin() + static_cast<std::ptrdiff_t>(differences_m.size() / 2);
+  std::nth_element(differences_m.begin(), middle, differences_m.end());
+  return *middle;
+}
+
+/// Whether the scans change less from one to the next in `order` than in the order of the log. Where times were
+/// stamped late, the order of the log is right; where scans were swapped, their times are.
+bool is_smoother(const std::vector<Position>& positions, const Order& order) {
+  double as_ordered_m = 0.0;
+  double as_recorded_m = 0.0;
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    if (order[i - 1] + 1 == order[i]) continue;
+    as_ordered_m += difference_m(positions[order[i - 1]], positions[order[i]]);
+  }
+  std::vector<bool> follows(order.size(), false);
+  for (std::size_t i = 1; i < order.size(); ++i) follows[order[i]] = order[i - 1] + 1 == order[i];
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    if (!follows[i]) as_recorded_m += difference_m(positions[i - 1], positions[i]);
+  }
+  return as_ordered_m < as_recorded_m;
+}
+
+/// Sorts positions by time where that is the order in which they were taken; how many moved.
+std::size_t sort_swapped(std::vector<Position>& positions, Times& times_s) {
+  const std::optional<Order> order = order_by_time(times_s);
+  if (!order || !is_smoother(positions, *order)) return 0;
+  std::size_t num_moved = 0;
   std::vector<Position> sorted;
   sorted.reserve(positions.size());
-  for (const std::size_t i : order) sorted.push_back(std::move(positions[i]));
+  for (std::size_t i = 0; i < order->size(); ++i) {
+    if ((*order)[i] != i) ++num_moved;
+    sorted.push_back(std::move(positions[(*order)[i]]));
+  }
   positions = std::move(sorted);
   times_s = times_of(positions);
   return num_moved;
 }
 
-std::size_t interpolate_single_ones(Times& times_s) {
-  std::size_t count = 0;
+/// Which times make the longest sequence that does not go back.
+std::vector<bool> in_longest_sequence(const Times& times_s) {
+  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  Order ends;  // of the best sequence of each length, its last element
+  Order before(times_s.size(), kNone);
   for (std::size_t i = 0; i < times_s.size(); ++i) {
-    const bool has_before = i > 0;
-    const bool has_after = i + 1 < times_s.size();
-    if (!has_before || !has_after || !(times_s[i - 1] < times_s[i + 1])) continue;
-    if (times_s[i - 1] <= times_s[i] && times_s[i] <= times_s[i + 1]) continue;
-    times_s[i] = 0.5 * (times_s[i - 1] + times_s[i + 1]);
-    ++count;
+    const auto later = std::upper_bound(ends.begin(), ends.end(), times_s[i],
+                                        [&](double time_s, std::size_t end) { return time_s < times_s[end]; });
+    if (later != ends.begin()) before[i] = *std::prev(later);
+    if (later == ends.end()) {
+      ends.push_back(i);
+    } else {
+      *later = i;
+    }
   }
-  return count;
+  std::vector<bool> is_in(times_s.size(), false);
+  for (std::size_t i = ends.empty() ? kNone : ends.back(); i != kNone; i = before[i]) is_in[i] = true;
+  return is_in;
 }
 
-/// The first time has none before it: one that lies after the second is wrong when the second and third go together.
-std::size_t mend_first(Times& times_s, double step_s) {
-  if (times_s.size() < 3 || times_s[0] <= times_s[1] || !(times_s[1] < times_s[2])) return 0;
-  times_s[0] = times_s[1] - step_s;
-  return 1;
+/// A few times that do not fit into the sequence of the others are put between their neighbours; how many.
+std::size_t interpolate_odd_ones(Times& times_s, double step_s) {
+  const std::vector<bool> fits = in_longest_sequence(times_s);
+  std::size_t count = 0;
+  for (std::size_t first = 0; first < times_s.size();) {
+    if (fits[first]) {
+      ++first;
+      continue;
+    }
+    std::size_t next = first;
+    while (next < times_s.size() && !fits[next]) ++next;
+    if (next - first <= kMostLate) {
+      const auto steps = static_cast<double>(next - first + 1);
+      const double begin_s = first > 0 ? times_s[first - 1] : times_s[next] - steps * step_s;
+      const double end_s = next < times_s.size() ? times_s[next] : begin_s + steps * step_s;
+      for (std::size_t i = first; i < next; ++i, ++count) {
+        times_s[i] = begin_s + (end_s - begin_s) * static_cast<double>(i - first + 1) / steps;
+      }
+    }
+    first = next;
+  }
+  return count;
 }
 
 std::size_t move_on_after_set_back(Times& times_s, double step_s) {
@@ -115,8 +194,8 @@ std::vector<std::string> TimestampRepairs::lines() const {
   const auto add = [&](std::size_t count, const char* what) {
     if (count > 0) lines.push_back(std::to_string(count) + " " + what);
   };
-  if (all_replaced) lines.emplace_back("all timestamps are the same; the index of each position in seconds is taken");
-  add(num_sorted, "positions were not in the order of their timestamps and are sorted");
+  if (all_replaced) lines.emplace_back("most timestamps are the same; the index of each position in seconds is taken");
+  add(num_sorted, "positions were not in the order in which they were taken, and are sorted by their timestamps");
   add(num_interpolated, "timestamps repeat or do not fit those around them, and are interpolated");
   add(num_set_back, "times the clock goes back; the order of the log stays, and its times go on by the usual step");
   return lines;
@@ -126,14 +205,14 @@ TimestampRepairs mend_timestamps(std::vector<Position>& positions) {
   TimestampRepairs repairs;
   Times times_s = times_of(positions);
   if (times_s.size() < 2 || increases(times_s)) return repairs;
-  if (std::all_of(times_s.begin(), times_s.end(), [&](double time_s) { return time_s == times_s.front(); })) {
+  if (say_nothing(times_s)) {
     repairs.all_replaced = true;
     std::iota(times_s.begin(), times_s.end(), 0.0);
   } else {
     const double step_s = usual_step_s(times_s);
     repairs.num_sorted = sort_swapped(positions, times_s);
     if (repairs.num_sorted == 0) {
-      repairs.num_interpolated = mend_first(times_s, step_s) + interpolate_single_ones(times_s);
+      repairs.num_interpolated = interpolate_odd_ones(times_s, step_s);
       repairs.num_set_back = move_on_after_set_back(times_s, step_s);
     }
     repairs.num_interpolated += spread_repeated(times_s, step_s);

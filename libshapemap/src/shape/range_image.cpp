@@ -31,8 +31,7 @@ Bearings bearings_of_even_beams(const SubScan& sub_scan, bool upside_down) {
 
 /// As many bearings, one typical step apart, as cover all beams; at most a full turn of them.
 Bearings bearings_of_uneven_beams(const SubScan& sub_scan, bool upside_down) {
-  const auto [lowest, highest] =
-      std::minmax_element(sub_scan.beam_angles_rad.begin(), sub_scan.beam_angles_rad.end());
+  const auto [lowest, highest] = std::minmax_element(sub_scan.beam_angles_rad.begin(), sub_scan.beam_angles_rad.end());
   const double span_rad = *highest - *lowest;
   const double step_rad = std::abs(sub_scan.angle_step_rad);
   if (!(step_rad > 0.0)) return {};

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 LogReadOptions four_sub_scans() {
   LogReadOptions options;
   options.fov_rad = 100 * kDegree;
-  options.range_unit = LengthUnit::kCentimetre;
+  options.range_unit = RangeUnit::kCentimetre;
   options.sub_scans_per_position = 4;
   return options;
 }

@@ -47,7 +47,10 @@ class Report : public testing::Test {
                                     selection_,
                                     grid_,
                                     {"odd"},
-                                    {1.0, 2.0, 3.0, 6.5, 6.0, 50.0, {{1008, 4.0, 7.5, 40.0}}}}));
+                                    {1.0, 2.0, 3.0, 6.5, 6.0, 50.0, {{1008, 4.0, 7.5, 40.0}}},
+                                    {},
+                                    walls_,
+                                    {{0, 1000, 12}}}));
   }
 
   std::vector<LogFile> logs_{{"run\xFF.log", "carmen"}};
@@ -57,6 +60,7 @@ class Report : public testing::Test {
   LogReadOptions reading_;
   SelectionOptions selection_;
   GridMapOptions grid_;
+  std::vector<WallDirection> walls_;
 };
 
 TEST_F(Report, TellsWhatBecameOfEachPosition) {
@@ -78,6 +82,20 @@ TEST_F(Report, TellsWhatBecameOfEachPosition) {
   EXPECT_EQ(third["reason"], "only 3 of 10");
   EXPECT_TRUE(third["alignment"]["ref_from_query"].is_null());
   EXPECT_TRUE(third["map_from_robot"].is_null());
+}
+
+TEST_F(Report, TellsWhatThePicturesShowAndHowFarTheyAreTurned) {
+  const Json plain = parsed()["fragments"];
+  EXPECT_EQ(plain[0]["picture"], Json::parse(R"({"num_returns": 1000, "num_outside": 12})"));
+  EXPECT_TRUE(plain[1]["picture"].is_null()) << "it was not drawn";
+  EXPECT_TRUE(plain[0]["walls"].is_null()) << "it was not asked for";
+  walls_ = {{-30 * kDegree, 0.8, 0.1}, {20 * kDegree, 0.3, 0.2}};
+  const Json turned = parsed()["fragments"];
+  EXPECT_NEAR(turned[0]["walls"]["turned_deg"], 30.0, 1e-9);
+  EXPECT_EQ(turned[0]["walls"]["share"], 0.8);
+  EXPECT_EQ(turned[1]["walls"]["turned_deg"], 0.0) << "no direction dominates";
+  EXPECT_EQ(turned[1]["walls"]["rival_share"], 0.2);
+  EXPECT_EQ(parsed()["options"]["align-walls"], false);
 }
 
 TEST_F(Report, OfThePapersMethodHasNoProbability) {

@@ -3,9 +3,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "shapemap/scan/beam_angles.hpp"
+#include "shapemap/scan/returns.hpp"
 #include "support/matchers.hpp"
 #include "support/views.hpp"
 
@@ -149,6 +152,34 @@ TEST(RangeImage, NormalsOfWallsPointToTheSensor) {
     num_across += beam.normal.dot(-beam.hit_m) > 0.0 ? 1 : 0;
   }
   EXPECT_GE(num_across, 710) << "of 720; corners may be either way";
+}
+
+/// Beams that are moved a little off their even angles see the same: nearly every bearing has its hit, and what a beam
+/// saw is in the bearing that it fell into, or in the one beside it.
+TEST(RangeImage, OfUnevenBeamsHasNearlyEveryBearing) {
+  std::mt19937 rng(6);
+  std::uniform_real_distribution<double> aside(-0.4, 0.4);
+  for (const bool full_circle : {true, false}) {
+    SubScan sub_scan;
+    std::vector<double> angles_rad;
+    for (int k = 0; k < (full_circle ? 360 : 180); ++k) {
+      angles_rad.push_back((k - 90 + aside(rng)) * kDegree);
+      sub_scan.ranges_m.push_back(2.0F);
+    }
+    std::shuffle(angles_rad.begin(), angles_rad.end(), rng);
+    set_beam_angles(sub_scan, angles_rad);
+    const RangeImage image = image_of(sub_scan);
+    std::size_t num_hits = 0;
+    for (std::size_t k = 0; k < image.beams.size(); ++k) {
+      const RangeImage::Beam& beam = image.beams[k];
+      if (beam.range_m <= 0.0) continue;
+      ++num_hits;
+      const double seen_rad = std::atan2(beam.hit_m.y(), beam.hit_m.x());
+      EXPECT_LT(angle_between(seen_rad, bearing_rad(image, k)), 0.76 * image.step_rad);
+    }
+    EXPECT_GT(num_hits, image.beams.size() * 98 / 100);
+    EXPECT_NEAR(static_cast<double>(image.beams.size()) * image.step_rad, full_circle ? 2 * kPi : kPi, 4 * kDegree);
+  }
 }
 
 TEST(RangeImage, OfNoBeamsHasNone) {

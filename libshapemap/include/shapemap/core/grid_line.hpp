@@ -5,14 +5,15 @@
 
 namespace shapemap {
 
-/// Bresenham's line: calls `visit(cell)` for each cell from `from` on, up to the one before `to`.
+/// Bresenham's line: calls `visit(cell)` for each cell from `from` on, up to the one before `to`, as long as that
+/// returns true.
 template <class Visit>
-void for_each_cell_before(Eigen::Vector2i from, const Eigen::Vector2i& to, Visit&& visit) {
+void while_cell_before(Eigen::Vector2i from, const Eigen::Vector2i& to, Visit&& visit) {
   const Eigen::Vector2i step(from.x() < to.x() ? 1 : -1, from.y() < to.y() ? 1 : -1);
   const Eigen::Vector2i length = (to - from).cwiseAbs();
   int balance = length.x() - length.y();
   while (from != to) {
-    visit(static_cast<const Eigen::Vector2i&>(from));
+    if (!visit(static_cast<const Eigen::Vector2i&>(from))) return;
     const int twice = 2 * balance;
     if (twice > -length.y()) {
       balance -= length.y();
@@ -23,6 +24,15 @@ void for_each_cell_before(Eigen::Vector2i from, const Eigen::Vector2i& to, Visit
       from.y() += step.y();
     }
   }
+}
+
+/// The same for all of these cells.
+template <class Visit>
+void for_each_cell_before(const Eigen::Vector2i& from, const Eigen::Vector2i& to, Visit&& visit) {
+  while_cell_before(from, to, [&](const Eigen::Vector2i& cell) {
+    visit(cell);
+    return true;
+  });
 }
 
 }  // namespace shapemap

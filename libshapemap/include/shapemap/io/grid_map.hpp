@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -25,12 +26,19 @@ struct EnumNames<Contradicting> {
 struct GridMapOptions {
   double resolution_m = 0.05;
   Contradicting contradicting = Contradicting::kFillGaps;
+  bool draw_all = false;
+  double clear_no_return_m = 0.0;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit(Field{"resolution-m", "side of a map cell [m]", 0.001, 10}, self.resolution_m);
     visit(Field{"contradicting-scans", "what scans that contradict the rest of the map draw into it"},
           self.contradicting);
+    visit(Field{"draw-all", "make the picture large enough for all returns, also false and far ones"}, self.draw_all);
+    visit(Field{"clear-no-return-m",
+                "beams without a return are drawn free for so long, or up to the laser's range [m]; 0: not at all", 0,
+                1000},
+          self.clear_no_return_m);
   }
 };
 
@@ -41,14 +49,17 @@ struct GridMap {
   int width_cells = 0;
   int height_cells = 0;
   std::vector<std::uint8_t> grey;  ///< row-major; 0 occupied, 255 free, 127 or 128 unknown
+  std::size_t num_returns = 0;     ///< of all scans that were drawn
+  std::size_t num_outside = 0;     ///< of these, those that lie outside of the picture
 
   /// Column and row of a point, also outside of the grid.
   Eigen::Vector2i pixel_at(const Point2& p_in_map_m) const;
 };
 
 /// Ray-traced occupancy grid of the placed positions, built with MRPT's grid map. Those that contradict the rest are
-/// drawn last. Throws OutputError when the map
-/// would have more than 400 million cells.
+/// drawn last. The grid ends where the map does: a few far returns that would make it many times larger lie outside,
+/// and their beams are drawn up to its rim, unless `options.draw_all`. Throws OutputError when the map would have more
+/// than 400 million cells.
 GridMap build_grid_map(const Log& log, const std::vector<PlacedPosition>& placed, const ReturnOptions& returns,
                        const GridMapOptions& options);
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "shapemap/core/options.hpp"
+#include "shapemap/scan/range_unit.hpp"
 #include "shapemap/scan/scan.hpp"
 
 /// Reading and writing logs, whatever their format. Odometry and recorded poses are not even parsed.
@@ -18,19 +19,13 @@ struct EnumNames<LogFormat> {
   static constexpr std::array<std::string_view, 4> names{"auto", "rawlog", "carmen", "nist"};
 };
 
-enum class LengthUnit { kMetre, kCentimetre, kMillimetre };
-
-template <>
-struct EnumNames<LengthUnit> {
-  static constexpr std::array<std::string_view, 3> names{"m", "cm", "mm"};
-};
-
 /// What a log does not say itself. The geometry is used for the bare form (one sub-scan of numbers a line) and for
-/// CARMEN lines whose number of beams has no convention.
+/// CARMEN lines whose number of beams has no convention. `upside_down` turns every laser that is read.
 struct LogReadOptions {
   std::string sensor_label;  ///< only this laser; empty: the first label found (all sub-scans of a frame)
   double fov_rad = 0.0;      ///< first to last beam; 0: by convention
-  LengthUnit range_unit = LengthUnit::kMetre;
+  RangeUnit range_unit = RangeUnit::kAuto;
+  bool upside_down = false;
   int sub_scans_per_position = 1;
   double sub_scan_turn_rad = 90 * kDegree;
 
@@ -40,7 +35,10 @@ struct LogReadOptions {
     visit(Field{"fov-deg", "angle from first to last beam, where the log does not say [deg]; 0: by convention", 0, 360,
                 kDegree},
           self.fov_rad);
-    visit(Field{"range-unit", "unit of the ranges of a bare log"}, self.range_unit);
+    visit(Field{"range-unit", "unit of the ranges, where the log does not say; auto: as the readings tell"},
+          self.range_unit);
+    visit(Field{"upside-down", "the laser is mounted upside down, or counts its beams clockwise without saying so"},
+          self.upside_down);
     visit(Field{"sub-scans", "sub-scans per position of a bare log", 1, 1000}, self.sub_scans_per_position);
     visit(Field{"sub-scan-turn-deg", "turn between the sub-scans of a bare log [deg]", -360, 360, kDegree},
           self.sub_scan_turn_rad);
@@ -71,14 +69,14 @@ struct LogSummary {
   struct Sensor {
     std::string label;
     std::size_t num_sub_scans = 0;
-    std::size_t fewest_beams = 0;         ///< of the sub-scans that have readings
-    std::size_t most_beams = 0;           ///< 0: no sub-scan has readings
+    std::size_t fewest_beams = 0;          ///< of the sub-scans that have readings
+    std::size_t most_beams = 0;            ///< 0: no sub-scan has readings
     std::size_t num_without_readings = 0;  ///< sub-scans
     std::size_t num_without_returns = 0;   ///< sub-scans that have readings, none of which hit something
     bool has_uneven_beams = false;
     bool is_upside_down = false;
-    double fov_rad = 0.0;  ///< the widest, from first to last beam
-    double sweep_s = 0.0;  ///< the longest, from first to last beam; 0: the log does not say
+    double fov_rad = 0.0;      ///< the widest, from first to last beam
+    double sweep_s = 0.0;      ///< the longest, from first to last beam; 0: the log does not say
     double max_range_m = 0.0;  ///< as the log says; 0: it does not
     double shortest_return_m = 0.0;
     double longest_return_m = 0.0;

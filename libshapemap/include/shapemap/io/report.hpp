@@ -10,6 +10,7 @@
 #include "shapemap/io/log_selection.hpp"
 #include "shapemap/map/deskew.hpp"
 #include "shapemap/map/map_log.hpp"
+#include "shapemap/map/wall_direction.hpp"
 
 /// The account of a run, for people and scripts.
 namespace shapemap {
@@ -39,6 +40,13 @@ struct LogFile {
   std::string format;
 };
 
+/// How much of a fragment its picture shows.
+struct DrawnFragment {
+  int fragment = 0;  ///< index into MapResult::fragments
+  std::size_t num_returns = 0;
+  std::size_t num_outside = 0;  ///< of these, those that lie outside of the picture
+};
+
 struct RunReport {
   std::vector<LogFile> logs;
   const Log& log;  ///< the selected positions of all logs, see joined_logs()
@@ -49,6 +57,9 @@ struct RunReport {
   const GridMapOptions& grid;
   std::vector<std::string> warnings;
   RunCosts costs;
+  WallOptions walls{};
+  std::vector<WallDirection> wall_directions{};  ///< of each fragment; empty when they were not asked for
+  std::vector<DrawnFragment> drawn{};
   std::vector<SweepVerdict> sweeps{};  ///< one for each log, if any was asked about
 };
 

@@ -50,6 +50,14 @@ bool is_return(float range_m, const RangeLimits& limits);
 /// Empty for a sensor that is tilted more than `options.max_mount_tilt_rad`.
 std::vector<Return> returns_in_robot(const SubScan& sub_scan, const ReturnOptions& options);
 
+/// Whether a reading says that the beam hit nothing: NaN, infinite, or at or beyond a maximum range that is known. Zero
+/// and what is below the minimum range may as well be something too near to measure.
+bool is_open(float range_m, const RangeLimits& limits);
+
+/// Where beams that hit nothing end in the robot's frame, when they are followed for `length_m`, or up to the maximum
+/// range where that is known and shorter. Empty for a sensor that is tilted more than `options.max_mount_tilt_rad`.
+std::vector<Point2> open_ends_in_robot(const SubScan& sub_scan, const ReturnOptions& options, double length_m);
+
 /// Whether the sensor's own z axis points to the floor, so that its counterclockwise is clockwise from above.
 bool is_upside_down(const MountPose& robot_from_sensor);
 

@@ -56,6 +56,9 @@ struct Position {
   double timestamp_s = 0.0;  ///< as in the log
   std::vector<SubScan> sub_scans;
   std::optional<Pose2> reference_pose;  ///< surveyed pose, if the log has one; never used for mapping
+  /// What the robot itself took for its heading, if the log has it; never used for mapping, only to tell whether the
+  /// laser's scans are mirrored.
+  std::optional<double> recorded_heading_rad;
 };
 
 struct Log {
@@ -64,6 +67,7 @@ struct Log {
   /// Of several logs in one: positions, in order, at which one starts that was recorded by itself; without the first.
   std::vector<std::size_t> starts;
   std::vector<std::string> warnings;  ///< what was odd but could be read, one line each
+  bool states_range_unit = false;     ///< the log says itself in which unit its ranges are
 };
 
 }  // namespace shapemap

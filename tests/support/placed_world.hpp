@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "shapemap/map/trajectory.hpp"
+#include "support/synthetic_world.hpp"
+
+/// A log with the poses that it was simulated with.
+namespace shapemap::test {
+
+struct PlacedLog {
+  Log log;
+  std::vector<PlacedPosition> placed;
+
+  void add(Position position, const Pose2& map_from_robot) {
+    position.timestamp_s = static_cast<double>(placed.size());
+    placed.push_back(
+        {placed.size(), position.timestamp_s, map_from_robot, std::vector<Pose2>(position.sub_scans.size())});
+    log.positions.push_back(std::move(position));
+  }
+};
+
+/// Scans on the way from `first` to `last`, evenly spaced, all with the heading of `first`.
+inline void add_walk(PlacedLog& walk, const World& world, const Pose2& first, const Point2& last, int num_scans,
+                     const Scanner& scanner, std::mt19937& rng) {
+  for (int i = 0; i < num_scans; ++i) {
+    const double share = num_scans > 1 ? static_cast<double>(i) / (num_scans - 1) : 0.0;
+    const Point2 at_m = first.translation() + share * (last - first.translation());
+    const Pose2 pose{at_m.x(), at_m.y(), first.theta_rad};
+    walk.add(scan_of(world, pose, scanner, rng), pose);
+  }
+}
+
+inline PlacedLog walk_through(const World& world, const Pose2& first, const Point2& last, int num_scans,
+                              const Scanner& scanner = {}, unsigned seed = 1) {
+  PlacedLog walk;
+  std::mt19937 rng(seed);
+  add_walk(walk, world, first, last, num_scans, scanner, rng);
+  return walk;
+}
+
+}  // namespace shapemap::test
