@@ -115,9 +115,10 @@ int run_map(const MapArguments& arguments) {
   costs.cpu_s = cpu_seconds();
   costs.peak_memory_mib = peak_memory_mib();
   if (!arguments.report_path.empty()) {
-    outputs.add_text(arguments.report_path,
-                     json_report({logs.files, logs.log, result, settings.mapping, settings.reading, settings.selection,
-                                  settings.grid, warnings, costs, settings.walls, run.notes.walls, run.notes.drawn, sweeps}));
+    outputs.add_text(
+        arguments.report_path,
+        json_report({logs.files, logs.log, result, settings.mapping, settings.reading, settings.selection,
+                     settings.grid, warnings, costs, settings.walls, run.notes.walls, run.notes.drawn, sweeps}));
   }
   outputs.commit(IfInterrupted::kWriteAll);
   const bool was_interrupted = interrupted();  // what is told and the exit code say the same, whatever comes now

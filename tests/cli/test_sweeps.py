@@ -36,7 +36,7 @@ def bent_text(num_sweeps, sweep_s, header=""):
 
 @pytest.fixture(scope="module")
 def bent():
-    return bent_text(52, PERIOD_S)
+    return bent_text(56, PERIOD_S)
 
 
 @pytest.fixture
@@ -67,7 +67,7 @@ def test_bent_sweeps_are_straightened_and_that_is_told(map_of, bent):
     assert sweeps["num_better"] > 0.8 * sweeps["num_judged"] > 8
     assert sweeps["misfit_after_m"] < sweeps["misfit_before_m"]
     assert "sweeps of 0.1 s straightened" in told
-    assert len(off) == 52
+    assert len(off) == 56
     assert max(off) < 1.0
     _, told, off = map_of(bent, "--deskew", "off")
     assert "straightened" not in told
@@ -75,7 +75,7 @@ def test_bent_sweeps_are_straightened_and_that_is_told(map_of, bent):
 
 
 def test_sweeps_that_take_no_time_are_left_as_they_are(map_of, tmp_path):
-    text = bent_text(52, 0.0)
+    text = bent_text(56, 0.0)
     report, told, _ = map_of(text)
     assert not report["logs"][0]["sweeps"]["straightened"]
     assert "straightened" not in told
@@ -88,7 +88,7 @@ def test_a_sweep_time_may_be_given_and_one_that_cannot_be_is_told(map_of, bent):
     report, _, off = map_of(bent, "--sweep-time", PERIOD_S)
     assert report["logs"][0]["sweeps"]["num_judged"] == 0
     assert max(off) < 1.0
-    report, told, _ = map_of(bent_text(52, PERIOD_S, " time_step 1e-9"))
+    report, told, _ = map_of(bent_text(56, PERIOD_S, " time_step 1e-9"))
     assert "sweeps are 0.1 s apart" in told
     assert not report["logs"][0]["sweeps"]["told_by_log"]
 

@@ -14,7 +14,7 @@ namespace shapemap::test {
 using Motion = std::function<Pose2(double time_s)>;
 
 struct RollingLaser {
-  int num_beams = 240;
+  int num_beams = 120;
   double view_rad = 2 * kPi;
   double period_s = 0.1;
   double sweep_share = 1.0;  ///< of its period that a sweep takes

@@ -27,8 +27,12 @@ Point2 normal_of(const std::vector<Point2>& p_m, std::size_t low, std::size_t hi
     cos2 += d.x() * d.x() - d.y() * d.y();
     sin2 += 2.0 * d.x() * d.y();
   }
-  const double along_rad = 0.5 * std::atan2(sin2, cos2);
-  return {-std::sin(along_rad), std::cos(along_rad)};
+  // Of the angle of which these are the cosine and sine of the double, times a length.
+  const double length = std::hypot(cos2, sin2);
+  if (!(length > 0.0)) return {0.0, 0.0};
+  const double along_x = std::sqrt(std::max(0.0, 0.5 * (1.0 + cos2 / length)));
+  const double along_y = std::copysign(std::sqrt(std::max(0.0, 0.5 * (1.0 - cos2 / length))), sin2);
+  return {-along_y, along_x};
 }
 
 double mean_distance(const PlacedSweep& from, const PlacedSweep& to) {

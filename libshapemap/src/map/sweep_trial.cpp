@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kStretch = 4;
 constexpr std::size_t kLookedAt = 64;
 constexpr std::size_t kJudged = 24;
-constexpr std::size_t kLeastJudged = 12;
+constexpr std::size_t kLeastJudged = 13;  ///< fewer could not be sure of anything by kError
 constexpr std::size_t kPoints = 120;
 
 /// A stretch tells something of the time of a sweep where the robot turns by this from one sweep to the next.
