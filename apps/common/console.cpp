@@ -31,7 +31,24 @@ std::string oddities_text(const LogSummary::Sensor& sensor) {
   return all;
 }
 
-std::string sensor_text(const LogSummary::Sensor& sensor) {
+/// Three digits at a time.
+std::string grouped(std::size_t number) {
+  std::string digits = std::to_string(number);
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, " ");
+  return digits;
+}
+
+std::string level_text(const NoReturnLevel& level) {
+  char text[160];
+  if (level.from_m == level.to_m) {
+    std::snprintf(text, sizeof text, "  no returns  %.3f m: ", level.from_m);
+  } else {
+    std::snprintf(text, sizeof text, "  no returns  %.3f to %.3f m: ", level.from_m, level.to_m);
+  }
+  return text + grouped(level.num_readings) + " readings, taken as no return\n";
+}
+
+std::string sensor_text(const LogSummary::Sensor& sensor, const LogSummary& summary) {
   char text[320];
   std::snprintf(text, sizeof text,
                 "  sub-scans   %zu\n  beams       %s over %.6g deg\n  returns     %.1f %%, %.2f to %.2f m\n",
@@ -47,6 +64,9 @@ std::string sensor_text(const LogSummary::Sensor& sensor) {
   if (sensor.sweep_s > 0.0) {
     std::snprintf(text, sizeof text, "  sweep       %.6g s\n", sensor.sweep_s);
     all += text;
+  }
+  for (const NoReturnLevel& level : summary.no_returns) {
+    if (level.sensor_label == sensor.label) all += level_text(level);
   }
   return all + oddities_text(sensor);
 }
@@ -97,7 +117,7 @@ std::string log_summary_text(const LogSummary& summary) {
   char text[160];
   std::snprintf(text, sizeof text, "positions   %zu\nduration    %.3f s\n", summary.num_positions, summary.duration_s);
   std::string all = "format      " + summary.format + "\n" + text;
-  for (const LogSummary::Sensor& sensor : summary.sensors) all += sensor_text(sensor);
+  for (const LogSummary::Sensor& sensor : summary.sensors) all += sensor_text(sensor, summary);
   return all;
 }
 

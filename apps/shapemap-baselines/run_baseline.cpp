@@ -90,6 +90,10 @@ void write_outputs(const Arguments& arguments, const Log& log, const std::vector
     const GridMap map = build_grid_map(log, placed, arguments.settings.returns, arguments.settings.grid);
     cli::set_interrupt_policy(cli::OnInterrupt::kFinishStep);
     cli::add_map(arguments.map_path, map, nullptr, outputs);
+    if (map.num_outside > 0 && !arguments.quiet) {
+      std::fprintf(stderr, "%s: %zu of %zu returns lie outside of the picture; --draw-all draws them\n",
+                   cli::kProgramName, map.num_outside, map.num_returns);
+    }
   }
   outputs.add_text(arguments.trajectory_path, tum_trajectory(placed));
   outputs.commit();

@@ -112,8 +112,8 @@ def checksum(text: str, reference: Array | None, relations: list[RelationFile]) 
 
 
 def renumbered(text: str, every: int = 1, first: int = 0) -> tuple[list[float], str]:
-    """The times of all scans or positions, and the log of those that are used with 1, 2, 3 ... instead. What a scan says
-    of the times of its beams keeps its share of the usual time between scans."""
+    """The times of all scans or positions, and the log of those that are used with 1, 2, 3 ... instead. What a scan
+    says of the times of its beams keeps its share of the usual time between scans."""
     times: list[float] = []
     lines: list[str] = []
     num_used, used = 0, True

@@ -10,7 +10,6 @@
 #include "carmen.hpp"
 #include "log_formats.hpp"
 #include "mount_pose.hpp"
-#include "no_return_level.hpp"
 #include "shapemap/scan/beam_angles.hpp"
 #include "text.hpp"
 
@@ -73,7 +72,11 @@ class CarmenReader {
     while (const std::optional<std::string_view> line = lines_.next()) read_line(*line);
     choice_.report(source_.path(), log_);
     finish_log(source_, log_);
-    limit_flaser_ranges();
+    for (Position& position : log_.positions) {
+      for (SubScan& scan : position.sub_scans) {
+        if (scan.sensor_label == "FLASER") scan.max_range_m = param_max_range_m_;  // may come after the first scans
+      }
+    }
     return std::move(log_);
   }
 
@@ -219,23 +222,6 @@ class CarmenReader {
     }
     joins_previous_ = false;
     log_.positions.back().sub_scans.push_back(std::move(scan));
-  }
-
-  /// A FLASER line does not say what its laser's maximum is; see find_no_return_level().
-  void limit_flaser_ranges() {
-    NoReturnLevel level;
-    for (const Position& position : log_.positions) {
-      for (const SubScan& scan : position.sub_scans) {
-        if (scan.sensor_label == "FLASER") level.add(scan.ranges_m);
-      }
-    }
-    double max_range_m = level.max_range_m();
-    if (param_max_range_m_ > 0.0) max_range_m = std::min(max_range_m, param_max_range_m_);
-    for (Position& position : log_.positions) {
-      for (SubScan& scan : position.sub_scans) {
-        if (scan.sensor_label == "FLASER") scan.max_range_m = max_range_m;
-      }
-    }
   }
 
   ByteSource& source_;

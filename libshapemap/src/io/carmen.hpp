@@ -12,7 +12,4 @@ namespace shapemap {
 inline constexpr double kFlaserFirstAngle_rad = -90 * kDegree;
 std::optional<double> flaser_step_rad(std::size_t num_beams);
 
-/// From here on a FLASER reading is an error code of the laser.
-inline constexpr double kLongestFlaserRange_m = 81.0;
-
 }  // namespace shapemap

@@ -25,17 +25,17 @@ bool fits_flaser(const SubScan& scan) {
          std::abs(scan.first_angle_rad - kFlaserFirstAngle_rad) < 1e-9 && mount_with_heading(scan) == MountPose{};
 }
 
-/// The maximum range of all scans when FLASER lines can hold the log; nothing when they cannot. One kind of line for
-/// the whole log, since readers take two kinds for two lasers.
+/// The maximum range of all scans, or 0, when FLASER lines can hold the log; nothing when they cannot. One kind of line
+/// for the whole log, since readers take two kinds for two lasers.
 std::optional<double> flaser_max_range_m(const Log& log) {
   std::optional<double> max_range_m;
   for (const Position& position : log.positions) {
     if (position.sub_scans.size() != 1 || !fits_flaser(position.sub_scans.front())) return std::nullopt;
     const double scan_max_m = position.sub_scans.front().max_range_m;
-    if (scan_max_m <= 0.0 || (max_range_m && *max_range_m != scan_max_m)) return std::nullopt;
+    if (max_range_m && *max_range_m != scan_max_m) return std::nullopt;
     max_range_m = scan_max_m;
   }
-  return max_range_m && *max_range_m <= kLongestFlaserRange_m ? max_range_m : std::nullopt;
+  return max_range_m;
 }
 
 class CarmenText {
@@ -107,7 +107,7 @@ void write_robot_laser(const SubScan& clockwise_or_not, const Pose2& map_from_ro
 void write_carmen(const Log& log, const LogPoses* poses, ByteSink& sink) {
   sink.write(kHeader);
   const std::optional<double> flaser_max_m = flaser_max_range_m(log);
-  if (flaser_max_m) {
+  if (flaser_max_m && *flaser_max_m > 0.0) {
     CarmenText line;
     line << "PARAM robot_front_laser_max" << *flaser_max_m << " shapemap 0\n";
     sink.write(line.text());

@@ -3,6 +3,7 @@
 
 #include "log_formats.hpp"
 #include "shapemap/core/errors.hpp"
+#include "shapemap/scan/no_return.hpp"
 #include "shapemap/scan/timestamps.hpp"
 
 namespace shapemap {
@@ -89,9 +90,13 @@ void turn_upside_down(Log& log) {
 
 Log read_log(const std::string& path, LogFormat format, const LogReadOptions& options) {
   validate(options);
+  const NoReturnChoice no_returns = no_return_choice(options.no_return_m);
   ByteSource source(path);
   Log log = read_as(source, format, options);
   settle_range_unit(path, options.range_unit, log);
+  const std::size_t num_of_reader = log.warnings.size();
+  sort_out_no_returns(log, no_returns);
+  for (std::size_t i = num_of_reader; i < log.warnings.size(); ++i) log.warnings[i] = path + ": " + log.warnings[i];
   for (const std::string& line : mend_timestamps(log.positions).lines()) log.warnings.push_back(path + ": " + line);
   if (options.upside_down) turn_upside_down(log);
   return log;

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "shapemap/io/log_file.hpp"
+#include "shapemap/scan/joined_logs.hpp"
 #include "shapemap/scan/returns.hpp"
 
 namespace shapemap {
@@ -71,6 +72,10 @@ LogSummary summarise(const Log& log, std::size_t first, std::size_t last) {
   const auto [earliest, latest] = std::minmax_element(
       begin, end, [](const Position& a, const Position& b) { return a.timestamp_s < b.timestamp_s; });
   summary.duration_s = latest->timestamp_s - earliest->timestamp_s;
+  for (const NoReturnLevel& level : log.no_returns) {
+    if (part_with(log, first) <= level.log && level.log <= part_with(log, last - 1))
+      summary.no_returns.push_back(level);
+  }
   std::vector<Count> counts;
   for (auto position = begin; position != end; ++position) {
     for (const SubScan& scan : position->sub_scans) {

@@ -112,6 +112,7 @@ class CellWorths {
     std::uint32_t look = 0;  ///< that hit it last; 0: only scans that contradict the map
     bool is_surface = false;
   };
+  using Entry = std::pair<const std::int64_t, Cell>;
 
   static std::int64_t key_of(const CellIndex& cell) {
     return (cell.x * (std::int64_t{1} << 32)) + static_cast<std::int64_t>(static_cast<std::uint32_t>(cell.y));
@@ -120,8 +121,9 @@ class CellWorths {
   /// References stay valid when cells are added.
   Cell& at(const CellIndex& index) {
     const std::int64_t key = key_of(index);
-    if (!last_ || last_->first != key) last_ = &*cells_.try_emplace(key).first;
-    return last_->second;
+    Entry*& recent = recent_[static_cast<std::size_t>((index.x & 31) * 32 + (index.y & 31))];
+    if (!recent || recent->first != key) recent = &*cells_.try_emplace(key).first;
+    return recent->second;
   }
 
   /// By another look.
@@ -138,7 +140,7 @@ class CellWorths {
 
   double cells_per_m_;
   std::unordered_map<std::int64_t, Cell> cells_;
-  std::pair<const std::int64_t, Cell>* last_ = nullptr;
+  std::array<Entry*, 32 * 32> recent_{};  ///< the last cell of each residue of its indices, to spare looking it up
 };
 
 }  // namespace

@@ -48,16 +48,11 @@ Json options_json(const RunReport& report) {
 }
 
 Json sweeps_json(const SweepVerdict& verdict) {
-  return {{"straightened", verdict.straightened},
-          {"period_s", verdict.period_s},
-          {"sweep_time_s", verdict.sweep_time_s},
-          {"told_by_log", verdict.told},
-          {"num_judged", verdict.num_judged},
-          {"num_better", verdict.num_better},
-          {"misfit_before_m", verdict.misfit_before_m},
-          {"misfit_after_m", verdict.misfit_after_m},
-          {"num_sweeps", verdict.num_sweeps},
-          {"num_left", verdict.num_left},
+  return {{"straightened", verdict.straightened},       {"period_s", verdict.period_s},
+          {"sweep_time_s", verdict.sweep_time_s},       {"told_by_log", verdict.told},
+          {"num_judged", verdict.num_judged},           {"num_better", verdict.num_better},
+          {"misfit_before_m", verdict.misfit_before_m}, {"misfit_after_m", verdict.misfit_after_m},
+          {"num_sweeps", verdict.num_sweeps},           {"num_left", verdict.num_left},
           {"num_beams_twice", verdict.num_beams_twice}};
 }
 
@@ -80,6 +75,13 @@ Json log_json(const RunReport& report, std::size_t which, const LogPart& part) {
                        {"longest_return_m", sensor.longest_return_m},
                        {"return_ratio", sensor.return_ratio}});
   }
+  Json no_returns = Json::array();
+  for (const NoReturnLevel& level : summary.no_returns) {
+    no_returns.push_back({{"label", level.sensor_label},
+                          {"from_m", level.from_m},
+                          {"to_m", level.to_m},
+                          {"num_readings", level.num_readings}});
+  }
   const LogFile& file = report.logs.at(which);
   return {{"path", file.path},
           {"format", file.format},
@@ -88,6 +90,7 @@ Json log_json(const RunReport& report, std::size_t which, const LogPart& part) {
           {"num_placed", num_inside(report.result.placed(), part)},
           {"duration_s", summary.duration_s},
           {"sensors", sensors},
+          {"no_returns", no_returns},
           {"sweeps", which < report.sweeps.size() ? sweeps_json(report.sweeps[which]) : Json(nullptr)}};
 }
 

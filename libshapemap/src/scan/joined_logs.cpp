@@ -18,6 +18,10 @@ Log joined_logs(std::vector<Log> logs) {
     for (const std::size_t start : log.starts) all.starts.push_back(first + start);
     std::move(log.positions.begin(), log.positions.end(), std::back_inserter(all.positions));
     std::move(log.warnings.begin(), log.warnings.end(), std::back_inserter(all.warnings));
+    for (NoReturnLevel& level : log.no_returns) {
+      level.log += all.starts.size() - log.starts.size();
+      all.no_returns.push_back(std::move(level));
+    }
     if (formats.insert(log.format).second) all.format += (all.format.empty() ? "" : "+") + log.format;
   }
   return all;

@@ -11,10 +11,11 @@ namespace {
 constexpr double kFarthestMiddle_m = 100.0;
 
 /// What is usual, as the middle of a log-normal distribution and its width: rooms, and the noise of lasers.
-constexpr double kUsualRange_m = 3.0;
-constexpr double kRangeFactor = 4.0;
-constexpr double kUsualRoughness_m = 0.005;
+constexpr double kUsualRange_m = 5.0;
+constexpr double kRangeFactor = 3.0;
+constexpr double kUsualRoughness_m = 0.007;
 constexpr double kRoughnessFactor = 2.5;
+constexpr double kLeastRoughness = 0.5;  // of a unit
 
 /// No sensor measures nearer: a smaller limit was in metres.
 constexpr double kLeastMinRange_m = 0.01;
@@ -33,7 +34,7 @@ double quantile(std::vector<double>& values, double share) {
 bool is_reading(float range) { return std::isfinite(range) && range > 0.0F; }
 
 struct Readings {
-  double middle = 0.0;
+  double middle = 0.0;     ///< of the distances that occur
   double roughness = 0.0;  ///< how much the smoother half of the surfaces deviates from straight, beam by beam
 };
 
@@ -52,6 +53,9 @@ Readings readings_of(const Log& log) {
       }
     }
   }
+  // Each distance counts once, so that a code for "no return" does not, however often it stands there.
+  std::sort(ranges.begin(), ranges.end());
+  ranges.erase(std::unique(ranges.begin(), ranges.end()), ranges.end());
   return {quantile(ranges, 0.5), quantile(bends, 0.25)};
 }
 
@@ -63,12 +67,10 @@ double unusual(double value, double usual, double factor) {
 /// The log density of a log under a unit, but for what is the same for both.
 double log_density(const Readings& readings, RangeUnit unit) {
   const double scale = metres_per(unit);
-  double density = -unusual(readings.middle * scale, kUsualRange_m, kRangeFactor);
-  // Readings that are whole numbers may hide all roughness.
-  if (readings.roughness > 0.0) {
-    density -= unusual(readings.roughness * scale, kUsualRoughness_m, kRoughnessFactor);
-  }
-  return density;
+  // Readings that are whole numbers hide a roughness below one of them.
+  const double roughness = std::max(readings.roughness, kLeastRoughness);
+  return -unusual(readings.middle * scale, kUsualRange_m, kRangeFactor) -
+         unusual(roughness * scale, kUsualRoughness_m, kRoughnessFactor);
 }
 
 }  // namespace

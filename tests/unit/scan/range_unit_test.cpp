@@ -47,6 +47,17 @@ TEST(RangeUnit, IsRecognisedFromTheReadings) {
   }
 }
 
+TEST(RangeUnit, IsNotMistakenForACodeThatMostReadingsHave) {
+  Log log = walk(1.0, 0.01, 1.0, false);
+  for (Position& position : log.positions) {
+    std::vector<float>& ranges_m = position.sub_scans[0].ranges_m;
+    for (std::size_t i = 0; i < ranges_m.size(); ++i) {
+      if (i % 10 != 0) ranges_m[i] = 900.0F;
+    }
+  }
+  EXPECT_EQ(recognised_range_unit(log), RangeUnit::kMetre);
+}
+
 TEST(RangeUnit, OfALogWithoutReadingsIsTheMetre) {
   EXPECT_EQ(recognised_range_unit({}), RangeUnit::kMetre);
   Log log = walk(1.0, 0.01, 0.001, true);

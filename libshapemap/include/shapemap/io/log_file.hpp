@@ -28,6 +28,7 @@ struct LogReadOptions {
   bool upside_down = false;
   int sub_scans_per_position = 1;
   double sub_scan_turn_rad = 90 * kDegree;
+  std::string no_return_m = "auto";  ///< see no_return_choice()
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -42,6 +43,9 @@ struct LogReadOptions {
     visit(Field{"sub-scans", "sub-scans per position of a bare log", 1, 1000}, self.sub_scans_per_position);
     visit(Field{"sub-scan-turn-deg", "turn between the sub-scans of a bare log [deg]", -360, 360, kDegree},
           self.sub_scan_turn_rad);
+    visit(Field{"no-return-m",
+                "readings that mean no return [m]: levels or bands such as 51.15,51.0-51.2; auto: learned; none"},
+          self.no_return_m);
   }
 };
 
@@ -86,6 +90,7 @@ struct LogSummary {
   std::size_t num_positions = 0;
   double duration_s = 0.0;
   std::vector<Sensor> sensors;
+  std::vector<NoReturnLevel> no_returns;  ///< of the whole log or logs that the positions are from
 };
 LogSummary summarise(const Log& log);
 /// Of the positions [first, last) only.

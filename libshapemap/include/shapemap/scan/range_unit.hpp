@@ -20,7 +20,7 @@ struct EnumNames<RangeUnit> {
 /// The length of a unit; a metre for kAuto.
 double metres_per(RangeUnit unit);
 
-/// The unit that the readings of a log are in, judged by half of them: no sensor has half of its returns beyond 100 m.
+/// The unit that the readings of a log are in: no sensor has half of the distances that it measures beyond 100 m.
 /// Of the two smaller units, that one is meant whose distances and roughness of surfaces are the more usual.
 RangeUnit recognised_range_unit(const Log& log);
 

@@ -61,13 +61,23 @@ struct Position {
   std::optional<double> recorded_heading_rad;
 };
 
+/// A distance, or a narrow band of them, that stands for "no return" in the readings of one sensor.
+struct NoReturnLevel {
+  std::string sensor_label;
+  double from_m = 0.0;  ///< the shortest reading on it
+  double to_m = 0.0;    ///< the longest
+  std::size_t num_readings = 0;
+  std::size_t log = 0;  ///< of several logs in one: whose
+};
+
 struct Log {
   std::string format;  ///< "rawlog", "carmen", "nist" or "bare"
   std::vector<Position> positions;
   /// Of several logs in one: positions, in order, at which one starts that was recorded by itself; without the first.
   std::vector<std::size_t> starts;
-  std::vector<std::string> warnings;  ///< what was odd but could be read, one line each
-  bool states_range_unit = false;     ///< the log says itself in which unit its ranges are
+  std::vector<std::string> warnings;      ///< what was odd but could be read, one line each
+  std::vector<NoReturnLevel> no_returns;  ///< what was learned of the readings when the log was read
+  bool states_range_unit = false;         ///< the log says itself in which unit its ranges are
 };
 
 }  // namespace shapemap

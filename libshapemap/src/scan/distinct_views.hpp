@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "level_test.hpp"
+#include "range_sample.hpp"
+
+namespace shapemap {
+
+/// Adds up the weights of fragments inside of a window of distances and on both sides of it, each view once.
+///
+/// Two fragments are the same view if the rest of the sweep around them is the same: on the same beams of a robot that
+/// stands, or on other beams of one that turned. So hours in front of one pillar count as one pillar. What comes and
+/// goes on different beams while the robot stands are different views.
+class DistinctViews {
+ public:
+  DistinctViews(const RangeSample& sample, const LevelWindow& window, Millimetres side_mm);
+
+  /// Sweep number `turn` in an order that is spread over the whole sample, so that any first part stands for all.
+  void add_sweep(std::size_t turn);
+
+  double inside() const { return inside_.weight; }
+  double below() const { return below_.weight; }
+  double above() const { return above_.weight; }
+  /// More would not change what follows.
+  bool is_enough() const;
+
+ private:
+  struct View {
+    std::size_t sweep = 0;
+    double middle = 0.0;
+    double num_beams = 0.0;
+  };
+  struct Zone {
+    double weight = 0.0;
+    std::vector<View> views;
+  };
+  struct Shares {
+    double inside = 0.0;
+    double below = 0.0;
+    double above = 0.0;
+  };
+
+  Shares shares_of(const Fragment& fragment) const;
+  bool is_new(const Zone& zone, const View& view) const;
+  struct Likeness {
+    std::size_t compared = 0;
+    std::size_t same = 0;
+    double difference = 0.0;  ///< mean, as a share of the tolerance, at most 1
+    bool is_alike() const;
+  };
+  bool is_same(const View& a, const View& b) const;
+  /// Of two sweeps, where beam `middle_a` of the one is laid on `middle_b` of the other.
+  Likeness likeness(const View& a, double middle_a, const View& b, double middle_b) const;
+  bool is_inside(Millimetres range_mm) const { return range_mm >= window_.from_mm && range_mm < window_.end_mm; }
+
+  const RangeSample& sample_;
+  LevelWindow window_;
+  Millimetres side_mm_ = 0;
+  std::size_t stride_ = 1;
+  Zone inside_;
+  Zone below_;
+  Zone above_;
+};
+
+}  // namespace shapemap

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "level_test.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "distinct_views.hpp"
+
+namespace shapemap {
+namespace {
+
+constexpr double kErrorPerSensor = 1e-6;
+constexpr Millimetres kSideWindows = 8;  // flank on each side, in widths; see the class for the bound that follows
+constexpr double kLargestShare = 1.0 / 3.0;
+constexpr Millimetres kNarrowest_mm = 2;
+constexpr double kWidestShare = 0.02;        // of the distance: wider, people who walk by would keep inside
+constexpr Millimetres kWidest_mm = 512;      // spread levels are up to 0.2 m wide, and need not lie well in a window
+constexpr double kEvenShare = 0.2;           // of the weight of a side: 1/8 where readings are spread evenly
+constexpr double kQuantile = 0.25;           // levels may hold most of the weight, but not three quarters
+constexpr std::size_t kMostCandidates = 24;  // in each round
+constexpr std::size_t kFirstStage = 64;      // sweeps; each stage has four times as many as the one before
+constexpr double kNumStages = 6;
+
+/// Logarithm of a bound of the probability that `inside` of `inside + beside` fall inside, or more.
+double log_chernoff(double inside, double beside) {
+  const double total = inside + beside;
+  if (total <= 0.0 || inside <= kLargestShare * total) return 0.0;
+  const double share = inside / total;
+  const double rest = 1.0 - share;
+  double divergence = share * std::log(share / kLargestShare);
+  if (rest > 0.0) divergence += rest * std::log(rest / (1.0 - kLargestShare));
+  return -total * divergence;
+}
+
+bool overlap(const LevelWindow& a, const LevelWindow& b) { return a.from_mm < b.end_mm && b.from_mm < a.end_mm; }
+
+}  // namespace
+
+LevelTest::LevelTest(RangeSample& sample) : sample_(sample) {
+  add_up_weights();
+  find_resolution();
+}
+
+void LevelTest::add_up_weights() {
+  std::vector<double> weights(static_cast<std::size_t>(sample_.longest_mm()) + 1, 0.0);
+  for (const Fragment& fragment : sample_.fragments()) {
+    const Millimetres* readings_mm = sample_.readings(sample_.sweeps()[fragment.sweep]);
+    const double each = 1.0 / static_cast<double>(fragment.num_readings);
+    for (std::size_t beam = fragment.first; beam <= fragment.last; ++beam) {
+      weights[static_cast<std::size_t>(readings_mm[beam])] += readings_mm[beam] > 0 ? each : 0.0;
+    }
+  }
+  occupied_mm_.clear();
+  weight_below_.assign(weights.size() + 1, 0.0);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    weight_below_[i + 1] = weight_below_[i] + weights[i];
+    if (weights[i] > 0.0) occupied_mm_.push_back(static_cast<Millimetres>(i));
+  }
+}
+
+double LevelTest::weight(Millimetres from_mm, Millimetres end_mm) const {
+  const auto highest = static_cast<Millimetres>(weight_below_.size()) - 1;
+  return weight_below_[static_cast<std::size_t>(std::clamp(end_mm, 0, highest))] -
+         weight_below_[static_cast<std::size_t>(std::clamp(from_mm, 0, highest))];
+}
+
+double LevelTest::share_of_side(Millimetres from_mm, Millimetres width_mm) const {
+  const Millimetres end_mm = from_mm + width_mm;
+  const double beside =
+      std::max(weight(from_mm - kSideWindows * width_mm, from_mm), weight(end_mm, end_mm + kSideWindows * width_mm));
+  const double inside = weight(from_mm, end_mm);
+  return inside <= kEvenShare * beside ? 0.0 : 1.0;
+}
+
+void LevelTest::find_resolution() {
+  resolution_mm_ = kNarrowest_mm;
+  for (; resolution_mm_ < kWidest_mm; resolution_mm_ *= 2) {
+    double even = 0.0;
+    for (const Millimetres range_mm : occupied_mm_) {
+      if (share_of_side(range_mm - resolution_mm_ / 2, resolution_mm_) == 0.0) even += weight(range_mm, range_mm + 1);
+    }
+    if (even >= kQuantile * weight_below_.back()) break;
+  }
+}
+
+std::vector<LevelWindow> LevelTest::candidates() {
+  std::vector<LevelWindow> all;
+  num_windows_ = 1;
+  const double step_rad = sample_.largest_step_rad();
+  for (Millimetres width_mm = resolution_mm_; width_mm <= kWidest_mm; width_mm *= 2) {
+    num_windows_ += occupied_mm_.size();
+    for (const Millimetres from_mm : occupied_mm_) {
+      // A wall is seen square-on by a few beams only: the side has its share of them from this width on.
+      if (width_mm < 0.25 * step_rad * step_rad * from_mm) break;
+      if (width_mm > resolution_mm_ && width_mm > kWidestShare * from_mm) continue;
+      const Millimetres end_mm = from_mm + width_mm;
+      const double beside = std::max(weight(from_mm - kSideWindows * width_mm, from_mm),
+                                     weight(end_mm, end_mm + kSideWindows * width_mm));
+      const double log_error = log_chernoff(weight(from_mm, end_mm), beside);
+      if (log_error < std::log(kErrorPerSensor)) all.push_back({from_mm, end_mm, log_error});
+    }
+  }
+  std::stable_sort(all.begin(), all.end(), [](const LevelWindow& a, const LevelWindow& b) {
+    return a.log_error != b.log_error ? a.log_error < b.log_error : a.width_mm() < b.width_mm();
+  });
+  std::vector<LevelWindow> best;
+  for (const LevelWindow& window : all) {
+    if (best.size() == kMostCandidates) break;
+    const auto meets = [&](const LevelWindow& other) { return overlap(window, other); };
+    if (std::none_of(best.begin(), best.end(), meets)) best.push_back(window);
+  }
+  return best;
+}
+
+bool LevelTest::is_level(LevelWindow& window) const {
+  const double allowed = std::log(kErrorPerSensor / static_cast<double>(num_windows_) / kNumStages);
+  DistinctViews views(sample_, window, kSideWindows * window.width_mm());
+  const std::size_t num_sweeps = sample_.sweeps().size();
+  std::size_t stage_end = kFirstStage;
+  for (std::size_t seen = 0; seen < num_sweeps;) {
+    for (; seen < std::min(stage_end, num_sweeps); ++seen) views.add_sweep(seen);
+    window.log_error = log_chernoff(views.inside(), std::max(views.below(), views.above()));
+    if (window.log_error < allowed) return true;
+    if (views.is_enough()) return false;
+    stage_end *= 4;
+  }
+  return false;
+}
+
+std::optional<LevelWindow> LevelTest::next() {
+  add_up_weights();
+  for (LevelWindow& window : candidates()) {
+    const auto is_same = [&](const LevelWindow& other) {
+      return other.from_mm == window.from_mm && other.end_mm == window.end_mm;
+    };
+    if (std::any_of(refuted_.begin(), refuted_.end(), is_same)) continue;
+    if (is_level(window)) return window;
+    refuted_.push_back(window);
+  }
+  return std::nullopt;
+}
+
+}  // namespace shapemap

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "range_sample.hpp"
+
+namespace shapemap {
+
+/// Distances from `from_mm` on and below `end_mm`, on which suspiciously many fragments lie.
+struct LevelWindow {
+  Millimetres from_mm = 0;
+  Millimetres end_mm = 0;
+  double log_error = 0.0;  ///< bound of the logarithm of the probability that real surfaces look like this
+
+  Millimetres width_mm() const { return end_mm - from_mm; }
+};
+
+/// Looks for distances at which there are more fragments than surfaces can make, in a sample of one sensor's sweeps.
+///
+/// Null hypothesis: fragments are surfaces. Each has a weight of one, spread over its readings. Of the densest case, a
+/// flat wall seen square-on from d, the beams between d and d + w span an angle of sqrt(2 w / d), those up to 8 w
+/// farther another 2 sqrt(2 w / d): a window can hold at most half as much as the eight windows on one of its sides.
+/// The independent units are fragments in views that differ; turning on the spot or standing makes no new view. The
+/// weight in the window, given that of window and denser side, then exceeds a third with a probability that Hoeffding's
+/// form of the Chernoff bound limits.
+class LevelTest {
+ public:
+  explicit LevelTest(RangeSample& sample);
+
+  /// The most improbable window, if the null hypothesis does not hold for it; to be asked again once its readings were
+  /// removed from the sample.
+  std::optional<LevelWindow> next();
+
+  /// The narrowest window in which the readings of real surfaces are spread evenly, in spite of their quantisation.
+  Millimetres resolution_mm() const { return resolution_mm_; }
+
+ private:
+  void add_up_weights();
+  void find_resolution();
+  double weight(Millimetres from_mm, Millimetres end_mm) const;
+  double share_of_side(Millimetres from_mm, Millimetres width_mm) const;
+  std::vector<LevelWindow> candidates();
+  bool is_level(LevelWindow& window) const;
+
+  RangeSample& sample_;
+  std::vector<double> weight_below_;  ///< weight of all distances below an index in millimetres
+  std::vector<Millimetres> occupied_mm_;
+  Millimetres resolution_mm_ = 0;
+  std::size_t num_windows_ = 0;
+  std::vector<LevelWindow> refuted_;
+};
+
+}  // namespace shapemap

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "range_sample.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shapemap/scan/returns.hpp"
+
+namespace shapemap {
+namespace {
+
+constexpr std::size_t kMostSampled = 400'000;  // readings: a level on 0.1 % of them is still seen 400 times
+constexpr std::size_t kFewestSweeps = 1000;    // so many views are kept even of sensors with a great many beams
+constexpr double kSteepest = 2.0;              // tangent of the angle of incidence that still counts as one surface
+constexpr double kMostOfRange = 0.1;           // the same for widely spaced beams, as a share of the range
+constexpr double kNoise_mm = 50.0;             // of the roughest sensors
+constexpr std::size_t kMostBridged = 8;        // beams without a reading inside of a fragment
+
+}  // namespace
+
+Millimetres to_mm(float range_m, const SubScan& scan) {
+  if (!(range_m > 0.0F && range_m < static_cast<float>(kLongestRange_m))) return 0;  // false for NaN
+  if (range_m < static_cast<float>(scan.min_range_m)) return 0;
+  return static_cast<Millimetres>(range_m * 1000.0F + 0.5F);
+}
+
+double beam_step_rad(const SubScan& scan) {
+  const std::size_t num_beams = scan.ranges_m.size();
+  if (num_beams < 2) return 2 * kPi;
+  const double span_rad = std::abs(scan.beam_angle_rad(num_beams - 1) - scan.beam_angle_rad(0));
+  const double step_rad = span_rad / static_cast<double>(num_beams - 1);
+  const double widest_rad = 2 * kPi / static_cast<double>(num_beams - 1);
+  return step_rad > 0.0 && step_rad <= widest_rad ? step_rad : widest_rad;
+}
+
+Millimetres continuity_mm(Millimetres range_mm, double step_rad, std::size_t num_beams) {
+  const double share = std::min(kSteepest * step_rad * static_cast<double>(num_beams), kMostOfRange);
+  return static_cast<Millimetres>(share * range_mm + kNoise_mm);
+}
+
+RangeSample::RangeSample(const std::vector<SubScan*>& scans) {
+  std::size_t num_readings = 0;
+  for (const SubScan* scan : scans) num_readings += scan->ranges_m.size();
+  const std::size_t mean_beams = std::max<std::size_t>(1, num_readings / std::max<std::size_t>(1, scans.size()));
+  const std::size_t wanted = std::min(scans.size(), std::max(kFewestSweeps, kMostSampled / mean_beams));
+  for (std::size_t i = 0; i < wanted; ++i) {
+    const SubScan& scan = *scans[i * scans.size() / wanted];
+    Sweep sweep;
+    sweep.begin = ranges_mm_.size();
+    sweep.size = scan.ranges_m.size();
+    sweep.step_rad = beam_step_rad(scan);
+    sweep.is_closed = sweep.step_rad * (static_cast<double>(sweep.size) + 1.0) > 2 * kPi;
+    for (const float range_m : scan.ranges_m) ranges_mm_.push_back(to_mm(range_m, scan));
+    largest_step_rad_ = std::max(largest_step_rad_, sweep.step_rad);
+    sweeps_.push_back(sweep);
+  }
+  for (const Millimetres range_mm : ranges_mm_) longest_mm_ = std::max(longest_mm_, range_mm);
+  cut_into_fragments();
+}
+
+void RangeSample::remove(Millimetres from_mm, Millimetres to_mm) {
+  for (Millimetres& range_mm : ranges_mm_) {
+    if (range_mm >= from_mm && range_mm <= to_mm) range_mm = 0;
+  }
+  cut_into_fragments();
+}
+
+void RangeSample::cut_into_fragments() {
+  fragments_.clear();
+  for (std::size_t i = 0; i < sweeps_.size(); ++i) {
+    sweeps_[i].first_fragment = fragments_.size();
+    cut(i);
+    sweeps_[i].end_fragment = fragments_.size();
+  }
+}
+
+void RangeSample::cut(std::size_t index) {
+  const Sweep& sweep = sweeps_[index];
+  const Millimetres* readings_mm = readings(sweep);
+  Fragment current;
+  for (std::size_t beam = 0; beam < sweep.size; ++beam) {
+    const Millimetres range_mm = readings_mm[beam];
+    if (range_mm == 0) continue;
+    if (current.num_readings > 0) {
+      const std::size_t gap = beam - current.last;
+      const Millimetres before_mm = readings_mm[current.last];
+      if (gap <= kMostBridged + 1 &&
+          std::abs(range_mm - before_mm) <= continuity_mm(std::min(range_mm, before_mm), sweep.step_rad, gap)) {
+        current.last = beam;
+        ++current.num_readings;
+        current.nearest_mm = std::min(current.nearest_mm, range_mm);
+        current.farthest_mm = std::max(current.farthest_mm, range_mm);
+        continue;
+      }
+      fragments_.push_back(current);
+    }
+    current = {index, beam, beam, 1, range_mm, range_mm};
+  }
+  if (current.num_readings > 0) fragments_.push_back(current);
+}
+
+}  // namespace shapemap
