@@ -28,7 +28,8 @@ class ConsoleObserver : public RunObserver {
   void on_stage(std::string_view stage) override {
     reads_log_ = stage == "chain";
     const std::string asked_to_stop = interrupted() ? "interrupted; still: " : "";
-    progress_.start(asked_to_stop + std::string(stage), stage == "chain" ? "positions" : "pairs");
+    const bool by_scan = stage == "chain" || stage == "sweeps";
+    progress_.start(asked_to_stop + std::string(stage), by_scan ? "positions" : "pairs");
   }
   bool keep_going() override {
     progress_.tick();

@@ -33,6 +33,16 @@ std::vector<PositionPair> wanted_pairs(const AlignArguments& arguments, const Lo
   return pairs;
 }
 
+Log with_straight_sweeps(Log log, const AlignArguments& arguments) {
+  const MappingOptions& options = arguments.settings.mapping;
+  ConsoleObserver observer(!arguments.quiet);
+  std::vector<SweepVerdict> verdicts;
+  log = straightened(std::move(log), options.returns, options.deskew, options.chain.threads, observer, verdicts);
+  observer.finish();
+  log.warnings.insert(log.warnings.end(), observer.warnings().begin(), observer.warnings().end());
+  return log;
+}
+
 std::vector<AlignedPair> align_with_progress(const Log& references, const Log& queries,
                                              const std::vector<PositionPair>& pairs, const AlignArguments& arguments) {
   ConsoleObserver observer(!arguments.quiet, "pairs");
@@ -62,7 +72,8 @@ int run_align(const AlignArguments& arguments) {
   }
   check_paths(arguments);
   const auto read = [&](const std::string& path) {
-    return select_positions(read_log(path, arguments.format, settings.reading), settings.selection);
+    Log log = select_positions(read_log(path, arguments.format, settings.reading), settings.selection);
+    return with_straight_sweeps(std::move(log), arguments);
   };
   const Log log = read(arguments.log_path);
   const Log other = arguments.other_path.empty() ? Log{} : read(arguments.other_path);

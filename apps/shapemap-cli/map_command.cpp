@@ -50,6 +50,18 @@ MapRun map_with_progress(const LogSet& logs, const MapArguments& arguments, Trac
   return run;
 }
 
+/// From here on, the sweeps are as if all beams of one had been sent at once.
+std::vector<SweepVerdict> straighten(const MapArguments& arguments, LogSet& logs, std::vector<std::string>& warnings) {
+  const MappingOptions& options = arguments.settings.mapping;
+  ConsoleObserver observer(arguments.verbosity != Verbosity::kQuiet);
+  std::vector<SweepVerdict> verdicts;
+  logs.log =
+      straightened(std::move(logs.log), options.returns, options.deskew, options.chain.threads, observer, verdicts);
+  observer.finish();
+  warnings.insert(warnings.end(), observer.warnings().begin(), observer.warnings().end());
+  return verdicts;
+}
+
 /// Maps the logs, and writes the trace meanwhile if one is wanted.
 MapRun map_and_trace(const LogSet& logs, const MapArguments& arguments, std::vector<std::string>& warnings,
                      RunCosts& costs, OutputSet& outputs) {
@@ -82,13 +94,14 @@ int run_map(const MapArguments& arguments) {
   }
   check_output_paths(arguments);
   check_state(arguments);
-  const LogSet logs = read_logs(arguments);
+  LogSet logs = read_logs(arguments);
   RunCosts costs;
   costs.read_s = total.seconds();
   std::vector<std::string> warnings = logs.log.warnings;
 
   set_interrupt_policy(OnInterrupt::kFinishStep);
   const Stopwatch mapping;
+  const std::vector<SweepVerdict> sweeps = straighten(arguments, logs, warnings);
   OutputSet outputs(arguments.force);
   MapRun run = map_and_trace(logs, arguments, warnings, costs, outputs);
   const MapResult& result = run.result;
@@ -102,13 +115,15 @@ int run_map(const MapArguments& arguments) {
   costs.cpu_s = cpu_seconds();
   costs.peak_memory_mib = peak_memory_mib();
   if (!arguments.report_path.empty()) {
-    outputs.add_text(arguments.report_path,
-                     json_report({logs.files, logs.log, result, settings.mapping, settings.reading, settings.selection,
-                                  settings.grid, warnings, costs, settings.walls, run.notes.walls, run.notes.drawn}));
+    outputs.add_text(
+        arguments.report_path,
+        json_report({logs.files, logs.log, result, settings.mapping, settings.reading, settings.selection,
+                     settings.grid, warnings, costs, settings.walls, run.notes.walls, run.notes.drawn, sweeps}));
   }
   outputs.commit(IfInterrupted::kWriteAll);
   const bool was_interrupted = interrupted();  // what is told and the exit code say the same, whatever comes now
   if (was_interrupted && !result.interrupted) print_lines("", {"interrupted while writing; the map is whole"}, 1);
+  print_sweeps(arguments, logs, sweeps);
   print_summary(arguments, logs, result, run.notes, warnings, costs);
   return exit_code(logs, result, was_interrupted);
 }

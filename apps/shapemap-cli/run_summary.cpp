@@ -198,6 +198,14 @@ std::vector<std::string> unplaced_lines(const LogSet& logs, const MapResult& res
   return lines;
 }
 
+void print_sweeps(const MapArguments& arguments, const LogSet& logs, const std::vector<SweepVerdict>& sweeps) {
+  if (arguments.verbosity == Verbosity::kQuiet) return;
+  for (std::size_t i = 0; i < sweeps.size(); ++i) {
+    if (sweeps[i].text.empty()) continue;
+    print_line((logs.is_one() ? "" : logs.files.at(i).path + ": ") + sweeps[i].text);
+  }
+}
+
 void print_interrupted(const LogSet& logs, const MapResult& result) {
   const std::size_t total = logs.log.positions.size();
   const std::string where = result.positions.size() < total ? "after " + std::to_string(result.positions.size()) +

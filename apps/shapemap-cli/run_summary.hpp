@@ -7,6 +7,7 @@
 #include "arguments.hpp"
 #include "log_set.hpp"
 #include "shapemap/io/report.hpp"
+#include "shapemap/map/deskew.hpp"
 
 /// What a run says about itself on the console.
 namespace shapemap::cli {
@@ -19,6 +20,9 @@ struct MapNotes {
 
 /// Positions that have no place in the map.
 std::vector<std::string> unplaced_lines(const LogSet& logs, const MapResult& result);
+
+/// What was done about bent sweeps.
+void print_sweeps(const MapArguments& arguments, const LogSet& logs, const std::vector<SweepVerdict>& sweeps);
 
 /// After mapping, before the map is written.
 void print_interrupted(const LogSet& logs, const MapResult& result);

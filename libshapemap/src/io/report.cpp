@@ -47,6 +47,15 @@ Json options_json(const RunReport& report) {
   return all;
 }
 
+Json sweeps_json(const SweepVerdict& verdict) {
+  return {{"straightened", verdict.straightened},       {"period_s", verdict.period_s},
+          {"sweep_time_s", verdict.sweep_time_s},       {"told_by_log", verdict.told},
+          {"num_judged", verdict.num_judged},           {"num_better", verdict.num_better},
+          {"misfit_before_m", verdict.misfit_before_m}, {"misfit_after_m", verdict.misfit_after_m},
+          {"num_sweeps", verdict.num_sweeps},           {"num_left", verdict.num_left},
+          {"num_beams_twice", verdict.num_beams_twice}};
+}
+
 Json log_json(const RunReport& report, std::size_t which, const LogPart& part) {
   const LogSummary summary = summarise(report.log, part.first, part.last);
   Json sensors = Json::array();
@@ -81,7 +90,8 @@ Json log_json(const RunReport& report, std::size_t which, const LogPart& part) {
           {"num_placed", num_inside(report.result.placed(), part)},
           {"duration_s", summary.duration_s},
           {"sensors", sensors},
-          {"no_returns", no_returns}};
+          {"no_returns", no_returns},
+          {"sweeps", which < report.sweeps.size() ? sweeps_json(report.sweeps[which]) : Json(nullptr)}};
 }
 
 Json logs_json(const RunReport& report) {

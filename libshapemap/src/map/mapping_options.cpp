@@ -5,6 +5,7 @@ namespace shapemap {
 
 void make_strict_paper(MappingOptions& options) {
   options.chain.method = Method::kPaper;
+  options.deskew.mode = Deskew::kOff;
   options.shape.points = ShapePoints::kBeams;
   options.align.histogram.norm = HistogramNorm::kCount;
   options.align.lcs.target = LcsTarget::kConcatenated;

@@ -8,6 +8,7 @@
 #include "shapemap/io/grid_map.hpp"
 #include "shapemap/io/log_file.hpp"
 #include "shapemap/io/log_selection.hpp"
+#include "shapemap/map/deskew.hpp"
 #include "shapemap/map/map_log.hpp"
 #include "shapemap/map/wall_direction.hpp"
 
@@ -59,6 +60,7 @@ struct RunReport {
   WallOptions walls{};
   std::vector<WallDirection> wall_directions{};  ///< of each fragment; empty when they were not asked for
   std::vector<DrawnFragment> drawn{};
+  std::vector<SweepVerdict> sweeps{};  ///< one for each log, if any was asked about
 };
 
 /// One JSON object; see docs/cli.md for its members. What is not a number (a pose that does not exist) is null.

@@ -9,6 +9,7 @@
 #include "shapemap/graph/loop_hypotheses.hpp"
 #include "shapemap/graph/map_refinement.hpp"
 #include "shapemap/graph/sub_scan_refinement.hpp"
+#include "shapemap/map/deskew.hpp"
 #include "shapemap/map/scan_agreement.hpp"
 #include "shapemap/scan/returns.hpp"
 #include "shapemap/shape/polyline_em.hpp"
@@ -93,6 +94,7 @@ struct ChainOptions {
 /// All options of map_log(), grouped by stage.
 struct MappingOptions {
   ReturnOptions returns;
+  DeskewOptions deskew;  ///< of straightened(), not of map_log()
   PolylineOptions polylines;
   ShapeOptions shape;
   RobustOptions robust;
@@ -112,6 +114,7 @@ struct MappingOptions {
   template <class Self, class Visit>
   static void groups(Self& self, Visit&& visit) {
     visit("Returns", self.returns);
+    visit("Sweeps", self.deskew);
     visit("Polylines", self.polylines);
     visit("Shape", self.shape);
     visit("Robust method: views", self.robust.view);

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "placed_sweep.hpp"
+#include "sweep_trajectory.hpp"
+
+namespace shapemap {
+
+struct SweepFitOptions {
+  double first_gate_m = 0.5;
+  double last_gate_m = 0.12;
+  int iterations = 6;
+  std::size_t stride = 1;  ///< each so manieth point looks for its partner
+  int threads = 1;
+};
+
+/// Moves `trajectory` so that the points of each of the sweeps [first, last) lie on the surfaces that its neighbours
+/// saw; what moves is what these sweeps depend on, but for control points below `first_free`.
+void fit_sweeps(const std::vector<Sweep>& sweeps, std::size_t first, std::size_t last, std::size_t first_free,
+                const SweepFitOptions& options, SweepTrajectory& trajectory);
+
+}  // namespace shapemap

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep_points.hpp"
+
+#include <algorithm>
+
+namespace shapemap {
+
+std::vector<SweepPoint> sweep_points(const Position& position, const ReturnOptions& options, std::size_t max_points) {
+  std::size_t num_beams = 0;
+  for (const SubScan& sub_scan : position.sub_scans) num_beams += sub_scan.ranges_m.size();
+  const std::size_t step = std::max<std::size_t>(1, (num_beams + max_points / 2) / max_points);
+  std::vector<SweepPoint> points;
+  points.reserve(num_beams / step + position.sub_scans.size());
+  for (std::size_t s = 0; s < position.sub_scans.size(); ++s) {
+    std::vector<Return> returns = returns_in_robot(position.sub_scans[s], options);
+    std::sort(returns.begin(), returns.end(), [](const Return& a, const Return& b) { return a.beam < b.beam; });
+    bool begins_line = true;
+    for (const Return& hit : returns) {
+      if (hit.beam % step != 0) continue;
+      points.push_back({hit.p_in_robot_m, s, hit.beam, begins_line});
+      begins_line = false;
+    }
+  }
+  return points;
+}
+
+}  // namespace shapemap

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep_timing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "sweep_points.hpp"
+
+namespace shapemap {
+namespace {
+
+/// A longer time between two sweeps is a gap: what happened meanwhile is not known.
+constexpr double kLongestGap = 2.5;
+/// Fewer sweeps in a row do not tell how they were bent.
+constexpr std::size_t kLeastSweeps = 4;
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+double usual_period_s(const Log& log, std::size_t first, std::size_t last) {
+  std::vector<double> steps_s;
+  for (std::size_t i = first + 1; i < last; ++i) {
+    const double step_s = log.positions[i].timestamp_s - log.positions[i - 1].timestamp_s;
+    if (!(step_s > 0.0) || !std::isfinite(step_s)) continue;
+    steps_s.push_back(step_s);
+  }
+  // Where half of the stamps stand still or go back, they are no clock.
+  if (2 * steps_s.size() < last - first) return 0.0;
+  return median_of(std::move(steps_s));
+}
+
+std::vector<SweepRun> sweep_runs(const Log& log, std::size_t first, std::size_t last, double period_s) {
+  std::vector<SweepRun> runs;
+  std::size_t start = first;
+  for (std::size_t i = first + 1; i <= last; ++i) {
+    if (i < last) {
+      const double step_s = log.positions[i].timestamp_s - log.positions[i - 1].timestamp_s;
+      if (step_s > 0.0 && step_s <= kLongestGap * period_s) continue;
+    }
+    if (i - start >= kLeastSweeps) runs.push_back({start, i});
+    start = i;
+  }
+  return runs;
+}
+
+double BeamTiming::beam_s(const SubScan& sub_scan, std::size_t beam) const {
+  if (sweep_time_s == 0.0) return 0.0;
+  if (told) return sub_scan.beam_time_s(beam);
+  const double share = static_cast<double>(beam) / static_cast<double>(sub_scan.ranges_m.size());
+  return sweep_time_s > 0.0 ? share * sweep_time_s : (share - 1.0) * sweep_time_s;
+}
+
+std::vector<Sweep> timed_sweeps(const Log& log, std::size_t first, std::size_t last, const BeamTiming& timing,
+                                const ReturnOptions& returns, std::size_t max_points) {
+  std::vector<Sweep> sweeps;
+  sweeps.reserve(last - first);
+  for (std::size_t i = first; i < last; ++i) {
+    const Position& position = log.positions[i];
+    Sweep sweep;
+    sweep.stamp_s = position.timestamp_s - log.positions[first].timestamp_s;
+    sweep.first_s = sweep.stamp_s;
+    sweep.last_s = sweep.stamp_s;
+    for (const SweepPoint& point : sweep_points(position, returns, max_points)) {
+      const double time_s = sweep.stamp_s + timing.beam_s(position.sub_scans[point.sub_scan], point.beam);
+      sweep.points.push_back({point.p_m, time_s, point.begins_line});
+      sweep.first_s = std::min(sweep.first_s, time_s);
+      sweep.last_s = std::max(sweep.last_s, time_s);
+    }
+    sweeps.push_back(std::move(sweep));
+  }
+  return sweeps;
+}
+
+double told_sweep_time_s(const Log& log, std::size_t first, std::size_t last) {
+  std::vector<double> times_s;
+  for (std::size_t i = first; i < last; ++i) {
+    for (const SubScan& sub_scan : log.positions[i].sub_scans) {
+      const std::size_t num = sub_scan.ranges_m.size();
+      if (num > 1) times_s.push_back(sub_scan.beam_time_s(num - 1) - sub_scan.beam_time_s(0));
+    }
+  }
+  return median_of(std::move(times_s));
+}
+
+double sweep_time_of_rate_s(const Log& log, std::size_t first, std::size_t last, double period_s) {
+  std::vector<double> seen_rad;
+  for (std::size_t i = first; i < last; ++i) {
+    std::set<std::string> labels;
+    for (const SubScan& sub_scan : log.positions[i].sub_scans) {
+      if (!labels.insert(sub_scan.sensor_label).second) return 0.0;
+      const std::size_t num = sub_scan.ranges_m.size();
+      if (num < 2) continue;
+      const double step_rad =
+          std::abs(sub_scan.beam_angle_rad(num - 1) - sub_scan.beam_angle_rad(0)) / static_cast<double>(num - 1);
+      seen_rad.push_back(std::min(2.0 * kPi, step_rad * static_cast<double>(num)));
+    }
+  }
+  return period_s * median_of(std::move(seen_rad)) / (2.0 * kPi);
+}
+
+}  // namespace shapemap

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep_trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "shapemap/core/errors.hpp"
+#include "shapemap/core/parallel_for.hpp"
+#include "sweep_chain.hpp"
+
+namespace shapemap {
+namespace {
+
+/// Stretches of so many sweeps, not overlapping; so many are looked at, and so many of these judged.
+constexpr std::size_t kStretch = 4;
+constexpr std::size_t kLookedAt = 64;
+constexpr std::size_t kJudged = 24;
+constexpr std::size_t kLeastJudged = 13;  ///< fewer could not be sure of anything by kError
+constexpr std::size_t kPoints = 120;
+
+/// A stretch tells something of the time of a sweep where the robot turns by this from one sweep to the next.
+constexpr double kFast_rad = 2.0 * kDegree;
+/// Scans that do not even go together so well are of places too different.
+constexpr double kWorstMisfit_m = 0.10;
+
+/// The verdict "better" is wrong this often where the times of the beams do not matter.
+constexpr double kError = 1e-3;
+
+std::vector<SweepRun> stretches_of(const std::vector<SweepRun>& runs) {
+  std::vector<SweepRun> all;
+  for (const SweepRun& run : runs) {
+    for (std::size_t i = run.first; i + kStretch <= run.last; i += kStretch) all.push_back({i, i + kStretch});
+  }
+  if (all.size() <= kLookedAt) return all;
+  std::vector<SweepRun> some;
+  for (std::size_t k = 0; k < kLookedAt; ++k) some.push_back(all[k * all.size() / kLookedAt]);
+  return some;
+}
+
+struct Trial {
+  double misfit_m = 0.0;
+  double turned_rad = 0.0;  ///< the most from one sweep to the next
+};
+
+Trial tried(const Log& log, const SweepRun& stretch, const BeamTiming& timing, double period_s,
+            const ReturnOptions& returns) {
+  const std::vector<Sweep> sweeps = timed_sweeps(log, stretch.first, stretch.last, timing, returns, kPoints);
+  const ShortMotion motion = short_motion(sweeps, period_s);
+  Trial trial;
+  trial.misfit_m = motion.misfit_m;
+  for (std::size_t i = 1; i < sweeps.size(); ++i) {
+    const double turned_rad =
+        motion.trajectory.at(sweeps[i].stamp_s).z() - motion.trajectory.at(sweeps[i - 1].stamp_s).z();
+    trial.turned_rad = std::max(trial.turned_rad, std::abs(turned_rad));
+  }
+  return trial;
+}
+
+/// The stretches that are turned through fastest.
+std::vector<SweepRun> fastest(const std::vector<SweepRun>& stretches, const std::vector<Trial>& trials) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    if (trials[i].turned_rad > kFast_rad && trials[i].misfit_m < kWorstMisfit_m) order.push_back(i);
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return trials[a].turned_rad > trials[b].turned_rad; });
+  order.resize(std::min(order.size(), kJudged));
+  std::vector<SweepRun> chosen;
+  for (const std::size_t i : order) chosen.push_back(stretches[i]);
+  return chosen;
+}
+
+/// In how many rows column `a` has less than column `b`.
+std::size_t num_less(const std::vector<std::vector<double>>& rows, std::size_t a, std::size_t b) {
+  return static_cast<std::size_t>(
+      std::count_if(rows.begin(), rows.end(), [&](const auto& row) { return row[a] < row[b]; }));
+}
+
+/// By how much column `b` is less than column `a`, row by row.
+std::vector<double> gains_of(const std::vector<std::vector<double>>& rows, std::size_t a, std::size_t b) {
+  std::vector<double> gains;
+  for (const auto& row : rows) gains.push_back(row[a] - row[b]);
+  return gains;
+}
+
+double mean_of(const std::vector<std::vector<double>>& rows, std::size_t column) {
+  double sum = 0.0;
+  for (const auto& row : rows) sum += row[column];
+  return sum / std::max<double>(1.0, static_cast<double>(rows.size()));
+}
+
+}  // namespace
+
+double chance_of_gains(const std::vector<double>& gains) {
+  std::vector<double> sizes;
+  for (const double gain : gains) {
+    if (gain != 0.0) sizes.push_back(std::abs(gain));
+  }
+  std::sort(sizes.begin(), sizes.end());
+  // Twice the ranks, so that those of equal sizes, which share their mean, are whole numbers.
+  const auto rank_of = [&](double size) {
+    const auto [low, high] = std::equal_range(sizes.begin(), sizes.end(), size);
+    return static_cast<std::size_t>((low - sizes.begin()) + (high - sizes.begin()) + 1);
+  };
+  std::size_t reached = 0;
+  std::size_t most = 0;
+  std::vector<double> chance{1.0};  // of each sum of ranks
+  for (const double gain : gains) {
+    if (gain == 0.0) continue;
+    const std::size_t rank = rank_of(std::abs(gain));
+    if (gain > 0.0) reached += rank;
+    most += rank;
+    chance.resize(most + 1, 0.0);
+    for (std::size_t sum = most + 1; sum-- > 0;) {
+      chance[sum] = 0.5 * (chance[sum] + (sum >= rank ? chance[sum - rank] : 0.0));
+    }
+  }
+  return std::accumulate(chance.begin() + static_cast<std::ptrdiff_t>(reached), chance.end(), 0.0);
+}
+
+BeamTiming best_timing(const Log& log, const std::vector<SweepRun>& runs, double period_s,
+                       const std::vector<BeamTiming>& candidates, const ReturnOptions& returns, int threads,
+                       RunObserver& observer, SweepVerdict& verdict) {
+  const std::vector<SweepRun> stretches = stretches_of(runs);
+  std::vector<Trial> looks(stretches.size());
+  parallel_for(stretches.size(), threads,
+               [&](std::size_t i) { looks[i] = tried(log, stretches[i], candidates.front(), period_s, returns); });
+  if (!observer.keep_going()) throw Interrupted();
+  const std::vector<SweepRun> judged = fastest(stretches, looks);
+  verdict.num_judged = judged.size();
+  const BeamTiming unless_refuted = candidates.front().told ? candidates.front() : BeamTiming{};
+  if (judged.size() < kLeastJudged) return unless_refuted;
+
+  // Column 0: as the scans are.
+  std::vector<std::vector<double>> misfits_m(judged.size(), std::vector<double>(candidates.size() + 1));
+  parallel_for(judged.size(), threads, [&](std::size_t i) {
+    misfits_m[i][0] = tried(log, judged[i], {}, period_s, returns).misfit_m;
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      misfits_m[i][c + 1] = tried(log, judged[i], candidates[c], period_s, returns).misfit_m;
+    }
+  });
+  if (!observer.keep_going()) throw Interrupted();
+  std::size_t best = 1;
+  for (std::size_t c = 2; c <= candidates.size(); ++c) {
+    const bool is_surely_less = chance_of_gains(gains_of(misfits_m, best, c)) < kError;
+    if (is_surely_less && mean_of(misfits_m, c) < mean_of(misfits_m, best)) best = c;
+  }
+  verdict.num_better = num_less(misfits_m, best, 0);
+  verdict.misfit_before_m = mean_of(misfits_m, 0);
+  verdict.misfit_after_m = mean_of(misfits_m, best);
+  const auto tries = static_cast<double>(candidates.size());
+  if (tries * chance_of_gains(gains_of(misfits_m, 0, best)) < kError) return candidates[best - 1];
+  // What a log tells needs no proof, but must not be proved wrong.
+  return chance_of_gains(gains_of(misfits_m, best, 0)) < kError ? BeamTiming{} : unless_refuted;
+}
+
+}  // namespace shapemap

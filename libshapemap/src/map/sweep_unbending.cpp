@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sweep_unbending.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "shapemap/scan/beam_angles.hpp"
+
+namespace shapemap {
+namespace {
+
+struct Beam {
+  double angle_rad = 0.0;  ///< in the sensor's own plane and direction of counting
+  float range_m = 0.0F;
+};
+
+/// The beam from where the sensor was at the stamp to what `sub_scan` hit then.
+Beam unbent_beam(const SubScan& sub_scan, std::size_t beam, const RangeLimits& limits, const Pose2& robot_from_sensor,
+                 double upward, const Pose2& stamp_from_beam) {
+  const float range_m = sub_scan.ranges_m[beam];
+  const double angle_rad = sub_scan.beam_angle_rad(beam);
+  if (!is_return(range_m, limits)) return {angle_rad + upward * stamp_from_beam.theta_rad, range_m};
+  const double bearing_rad = upward * angle_rad;
+  const Point2 seen_m = static_cast<double>(range_m) * Point2(std::cos(bearing_rad), std::sin(bearing_rad));
+  const Point2 straight_m = (inverse(robot_from_sensor) * stamp_from_beam * robot_from_sensor) * seen_m;
+  const double turn_rad = wrap_angle(std::atan2(straight_m.y(), straight_m.x()) - bearing_rad);
+  return {angle_rad + upward * turn_rad, static_cast<float>(straight_m.norm())};
+}
+
+/// Which beams look where the sweep has not been before, in the direction in which it goes round.
+std::vector<std::size_t> once_round(const std::vector<Beam>& beams, double direction) {
+  std::vector<std::size_t> kept;
+  double reached_rad = 0.0;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const double gone_rad = direction * (beams[i].angle_rad - beams.front().angle_rad);
+    reached_rad = std::max(reached_rad, gone_rad);
+    if (gone_rad < 2.0 * kPi) kept.push_back(i);
+  }
+  std::stable_sort(kept.begin(), kept.end(), [&](std::size_t a, std::size_t b) {
+    return direction * beams[a].angle_rad < direction * beams[b].angle_rad;
+  });
+  // Those before the first beam may be where the last ones are.
+  const double first_rad = kept.empty() ? 0.0 : direction * beams[kept.front()].angle_rad;
+  while (!kept.empty() && direction * beams[kept.back()].angle_rad - first_rad >= 2.0 * kPi) kept.pop_back();
+  return kept;
+}
+
+}  // namespace
+
+SubScan unbent(const SubScan& sub_scan, const ReturnOptions& options, const BeamMotion& stamp_from_beam) {
+  const RangeLimits limits = range_limits(sub_scan, options);
+  const Pose2 robot_from_sensor = robot_from_sensor2(sub_scan);
+  const double upward = is_upside_down(sub_scan.robot_from_sensor) ? -1.0 : 1.0;
+  const std::size_t num = sub_scan.ranges_m.size();
+  std::vector<Beam> beams;
+  beams.reserve(num);
+  for (std::size_t i = 0; i < num; ++i) {
+    beams.push_back(unbent_beam(sub_scan, i, limits, robot_from_sensor, upward, stamp_from_beam(i)));
+  }
+  const double direction = num > 1 && sub_scan.beam_angle_rad(num - 1) < sub_scan.beam_angle_rad(0) ? -1.0 : 1.0;
+  SubScan straight = sub_scan;
+  straight.ranges_m.clear();
+  straight.intensities.clear();
+  std::vector<double> angles_rad;
+  for (const std::size_t i : once_round(beams, direction)) {
+    straight.ranges_m.push_back(beams[i].range_m);
+    angles_rad.push_back(beams[i].angle_rad);
+    if (!sub_scan.intensities.empty()) straight.intensities.push_back(sub_scan.intensities[i]);
+  }
+  set_beam_angles(straight, std::move(angles_rad));
+  straight.beam_times_s.clear();
+  straight.beam_time_step_s = 0.0;
+  straight.start_s = 0.0;
+  return straight;
+}
+
+double most_bent_m(const SubScan& sub_scan, const ReturnOptions& options, const BeamMotion& stamp_from_beam) {
+  double most_m = 0.0;
+  for (const Return& hit : returns_in_robot(sub_scan, options)) {
+    most_m = std::max(most_m, (stamp_from_beam(hit.beam) * hit.p_in_robot_m - hit.p_in_robot_m).norm());
+  }
+  return most_m;
+}
+
+}  // namespace shapemap
