@@ -19,8 +19,8 @@ constexpr std::size_t kGlance = 16;        // if none of so many readings agree,
 
 }  // namespace
 
-DistinctViews::DistinctViews(const RangeSample& sample, const LevelWindow& window, Millimetres side_mm)
-    : sample_(sample), window_(window), side_mm_(side_mm) {
+DistinctViews::DistinctViews(const RangeSample& sample, const LevelWindow& window)
+    : sample_(sample), window_(window), side_mm_(window.num_beside * window.width_mm()) {
   const std::size_t num_sweeps = std::max<std::size_t>(1, sample.sweeps().size());
   stride_ = std::max<std::size_t>(1, static_cast<std::size_t>(0.618 * static_cast<double>(num_sweeps)));
   while (std::gcd(stride_, num_sweeps) != 1) ++stride_;

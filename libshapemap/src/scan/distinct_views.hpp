@@ -16,7 +16,7 @@ namespace shapemap {
 /// goes on different beams while the robot stands are different views.
 class DistinctViews {
  public:
-  DistinctViews(const RangeSample& sample, const LevelWindow& window, Millimetres side_mm);
+  DistinctViews(const RangeSample& sample, const LevelWindow& window);
 
   /// Sweep number `turn` in an order that is spread over the whole sample, so that any first part stands for all.
   void add_sweep(std::size_t turn);

@@ -2,6 +2,7 @@
 #include "level_test.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "distinct_views.hpp"
@@ -10,11 +11,10 @@ namespace shapemap {
 namespace {
 
 constexpr double kErrorPerSensor = 1e-6;
-constexpr Millimetres kSideWindows = 8;  // flank on each side, in widths; see the class for the bound that follows
-constexpr double kLargestShare = 1.0 / 3.0;
+constexpr std::array<Millimetres, 2> kBeside{8, 24};  // the more, the stronger the test, but for levels among surfaces
 constexpr Millimetres kNarrowest_mm = 2;
-constexpr double kWidestShare = 0.02;        // of the distance: wider, people who walk by would keep inside
 constexpr Millimetres kWidest_mm = 512;      // spread levels are up to 0.2 m wide, and need not lie well in a window
+constexpr double kWidestShare = 0.02;        // of the distance: wider, people who walk by would keep inside
 constexpr double kEvenShare = 0.2;           // of the weight of a side: 1/8 where readings are spread evenly
 constexpr double kQuantile = 0.25;           // levels may hold most of the weight, but not three quarters
 constexpr std::size_t kMostCandidates = 24;  // in each round
@@ -22,13 +22,14 @@ constexpr std::size_t kFirstStage = 64;      // sweeps; each stage has four time
 constexpr double kNumStages = 6;
 
 /// Logarithm of a bound of the probability that `inside` of `inside + beside` fall inside, or more.
-double log_chernoff(double inside, double beside) {
+double log_chernoff(double inside, double beside, Millimetres num_beside) {
+  const double largest_share = 1.0 / std::sqrt(1.0 + num_beside);
   const double total = inside + beside;
-  if (total <= 0.0 || inside <= kLargestShare * total) return 0.0;
+  if (total <= 0.0 || inside <= largest_share * total) return 0.0;
   const double share = inside / total;
   const double rest = 1.0 - share;
-  double divergence = share * std::log(share / kLargestShare);
-  if (rest > 0.0) divergence += rest * std::log(rest / (1.0 - kLargestShare));
+  double divergence = share * std::log(share / largest_share);
+  if (rest > 0.0) divergence += rest * std::log(rest / (1.0 - largest_share));
   return -total * divergence;
 }
 
@@ -64,20 +65,21 @@ double LevelTest::weight(Millimetres from_mm, Millimetres end_mm) const {
          weight_below_[static_cast<std::size_t>(std::clamp(from_mm, 0, highest))];
 }
 
-double LevelTest::share_of_side(Millimetres from_mm, Millimetres width_mm) const {
-  const Millimetres end_mm = from_mm + width_mm;
-  const double beside =
-      std::max(weight(from_mm - kSideWindows * width_mm, from_mm), weight(end_mm, end_mm + kSideWindows * width_mm));
-  const double inside = weight(from_mm, end_mm);
-  return inside <= kEvenShare * beside ? 0.0 : 1.0;
+double LevelTest::denser_side(const LevelWindow& window) const {
+  const Millimetres side_mm = window.num_beside * window.width_mm();
+  return std::max(weight(window.from_mm - side_mm, window.from_mm), weight(window.end_mm, window.end_mm + side_mm));
+}
+
+bool LevelTest::is_even(Millimetres range_mm) const {
+  const LevelWindow window{range_mm - resolution_mm_ / 2, range_mm + resolution_mm_ / 2, kBeside.front()};
+  return weight(window.from_mm, window.end_mm) <= kEvenShare * denser_side(window);
 }
 
 void LevelTest::find_resolution() {
-  resolution_mm_ = kNarrowest_mm;
-  for (; resolution_mm_ < kWidest_mm; resolution_mm_ *= 2) {
+  for (resolution_mm_ = kNarrowest_mm; resolution_mm_ < kWidest_mm; resolution_mm_ *= 2) {
     double even = 0.0;
     for (const Millimetres range_mm : occupied_mm_) {
-      if (share_of_side(range_mm - resolution_mm_ / 2, resolution_mm_) == 0.0) even += weight(range_mm, range_mm + 1);
+      if (is_even(range_mm)) even += weight(range_mm, range_mm + 1);
     }
     if (even >= kQuantile * weight_below_.back()) break;
   }
@@ -88,16 +90,16 @@ std::vector<LevelWindow> LevelTest::candidates() {
   num_windows_ = 1;
   const double step_rad = sample_.largest_step_rad();
   for (Millimetres width_mm = resolution_mm_; width_mm <= kWidest_mm; width_mm *= 2) {
-    num_windows_ += occupied_mm_.size();
+    num_windows_ += kBeside.size() * occupied_mm_.size();
     for (const Millimetres from_mm : occupied_mm_) {
       // A wall is seen square-on by a few beams only: the side has its share of them from this width on.
       if (width_mm < 0.25 * step_rad * step_rad * from_mm) break;
       if (width_mm > resolution_mm_ && width_mm > kWidestShare * from_mm) continue;
-      const Millimetres end_mm = from_mm + width_mm;
-      const double beside = std::max(weight(from_mm - kSideWindows * width_mm, from_mm),
-                                     weight(end_mm, end_mm + kSideWindows * width_mm));
-      const double log_error = log_chernoff(weight(from_mm, end_mm), beside);
-      if (log_error < std::log(kErrorPerSensor)) all.push_back({from_mm, end_mm, log_error});
+      for (const Millimetres num_beside : kBeside) {
+        LevelWindow window{from_mm, from_mm + width_mm, num_beside};
+        window.log_error = log_chernoff(weight(from_mm, window.end_mm), denser_side(window), num_beside);
+        if (window.log_error < std::log(kErrorPerSensor)) all.push_back(window);
+      }
     }
   }
   std::stable_sort(all.begin(), all.end(), [](const LevelWindow& a, const LevelWindow& b) {
@@ -112,14 +114,26 @@ std::vector<LevelWindow> LevelTest::candidates() {
   return best;
 }
 
+double LevelTest::allowed_log_error(const LevelWindow& window) const {
+  const bool is_at_end = window.from_mm <= occupied_mm_.front() || window.end_mm > occupied_mm_.back();
+  double count = static_cast<double>(num_windows_);
+  if (is_at_end) {  // two ends, each width
+    count = 2.0 * static_cast<double>(kBeside.size());
+    for (Millimetres width_mm = resolution_mm_; width_mm < kWidest_mm; width_mm *= 2) {
+      count += 2.0 * static_cast<double>(kBeside.size());
+    }
+  }
+  return std::log(0.5 * kErrorPerSensor / count / kNumStages);
+}
+
 bool LevelTest::is_level(LevelWindow& window) const {
-  const double allowed = std::log(kErrorPerSensor / static_cast<double>(num_windows_) / kNumStages);
-  DistinctViews views(sample_, window, kSideWindows * window.width_mm());
+  const double allowed = allowed_log_error(window);
+  DistinctViews views(sample_, window);
   const std::size_t num_sweeps = sample_.sweeps().size();
   std::size_t stage_end = kFirstStage;
   for (std::size_t seen = 0; seen < num_sweeps;) {
     for (; seen < std::min(stage_end, num_sweeps); ++seen) views.add_sweep(seen);
-    window.log_error = log_chernoff(views.inside(), std::max(views.below(), views.above()));
+    window.log_error = log_chernoff(views.inside(), std::max(views.below(), views.above()), window.num_beside);
     if (window.log_error < allowed) return true;
     if (views.is_enough()) return false;
     stage_end *= 4;
@@ -131,7 +145,7 @@ std::optional<LevelWindow> LevelTest::next() {
   add_up_weights();
   for (LevelWindow& window : candidates()) {
     const auto is_same = [&](const LevelWindow& other) {
-      return other.from_mm == window.from_mm && other.end_mm == window.end_mm;
+      return other.from_mm == window.from_mm && other.end_mm == window.end_mm && other.num_beside == window.num_beside;
     };
     if (std::any_of(refuted_.begin(), refuted_.end(), is_same)) continue;
     if (is_level(window)) return window;
