@@ -15,11 +15,13 @@ constexpr std::array<Millimetres, 2> kBeside{8, 24};  // the more, the stronger 
 constexpr Millimetres kNarrowest_mm = 2;
 constexpr Millimetres kWidest_mm = 512;      // spread levels are up to 0.2 m wide, and need not lie well in a window
 constexpr double kWidestShare = 0.02;        // of the distance: wider, people who walk by would keep inside
+constexpr Millimetres kCoarsest_mm = 64;     // steps of readings are up to 5 cm
 constexpr double kEvenShare = 0.2;           // of the weight of a side: 1/8 where readings are spread evenly
 constexpr double kQuantile = 0.25;           // levels may hold most of the weight, but not three quarters
 constexpr std::size_t kMostCandidates = 24;  // in each round
 constexpr std::size_t kFirstStage = 64;      // sweeps; each stage has four times as many as the one before
 constexpr double kNumStages = 6;
+constexpr double kSlack = 2.0;  // by which the rest of the sweeps may say more than those seen
 
 /// Logarithm of a bound of the probability that `inside` of `inside + beside` fall inside, or more.
 double log_chernoff(double inside, double beside, Millimetres num_beside) {
@@ -76,7 +78,7 @@ bool LevelTest::is_even(Millimetres range_mm) const {
 }
 
 void LevelTest::find_resolution() {
-  for (resolution_mm_ = kNarrowest_mm; resolution_mm_ < kWidest_mm; resolution_mm_ *= 2) {
+  for (resolution_mm_ = kNarrowest_mm; resolution_mm_ < kCoarsest_mm; resolution_mm_ *= 2) {
     double even = 0.0;
     for (const Millimetres range_mm : occupied_mm_) {
       if (is_even(range_mm)) even += weight(range_mm, range_mm + 1);
@@ -135,7 +137,8 @@ bool LevelTest::is_level(LevelWindow& window) const {
     for (; seen < std::min(stage_end, num_sweeps); ++seen) views.add_sweep(seen);
     window.log_error = log_chernoff(views.inside(), std::max(views.below(), views.above()), window.num_beside);
     if (window.log_error < allowed) return true;
-    if (views.is_enough()) return false;
+    const double at_most = kSlack * window.log_error * static_cast<double>(num_sweeps) / static_cast<double>(seen);
+    if (views.is_enough() || at_most > allowed) return false;  // views become rarer, not more
     stage_end *= 4;
   }
   return false;
