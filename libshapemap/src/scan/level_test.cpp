@@ -13,6 +13,7 @@ namespace {
 constexpr double kErrorPerSensor = 1e-6;
 constexpr std::array<Millimetres, 2> kBeside{8, 24};  // the more, the stronger the test, but for levels among surfaces
 constexpr Millimetres kNarrowest_mm = 2;
+constexpr Millimetres kNearest_mm = 20;      // no laser measures surfaces that are nearer
 constexpr Millimetres kWidest_mm = 512;      // spread levels are up to 0.2 m wide, and need not lie well in a window
 constexpr double kWidestShare = 0.02;        // of the distance: wider, people who walk by would keep inside
 constexpr Millimetres kCoarsest_mm = 64;     // steps of readings are up to 5 cm
@@ -23,15 +24,24 @@ constexpr std::size_t kFirstStage = 64;      // sweeps; each stage has four time
 constexpr double kNumStages = 6;
 constexpr double kSlack = 2.0;  // by which the rest of the sweeps may say more than those seen
 
+/// What a window may hold of its own weight and that of the windows beside: all of them, of a wall seen square-on.
+double largest_share(const LevelWindow& window) {
+  const double distant = 1.0 / std::sqrt(1.0 + window.num_beside);
+  if (window.from_mm < kNearest_mm) return distant;
+  const double of_width = window.width_mm() / static_cast<double>(window.from_mm);
+  return std::acos(1.0 / (1.0 + of_width)) / std::acos(1.0 / (1.0 + (1.0 + window.num_beside) * of_width));
+}
+
 /// Logarithm of a bound of the probability that `inside` of `inside + beside` fall inside, or more.
-double log_chernoff(double inside, double beside, Millimetres num_beside) {
-  const double largest_share = 1.0 / std::sqrt(1.0 + num_beside);
+double log_chernoff(double inside, double beside, const LevelWindow& window) {
   const double total = inside + beside;
-  if (total <= 0.0 || inside <= largest_share * total) return 0.0;
+  if (total <= 0.0 || inside * inside * (1.0 + window.num_beside) <= total * total) return 0.0;
+  const double largest = largest_share(window);
   const double share = inside / total;
+  if (share <= largest) return 0.0;
   const double rest = 1.0 - share;
-  double divergence = share * std::log(share / largest_share);
-  if (rest > 0.0) divergence += rest * std::log(rest / (1.0 - largest_share));
+  double divergence = share * std::log(share / largest);
+  if (rest > 0.0) divergence += rest * std::log(rest / (1.0 - largest));
   return -total * divergence;
 }
 
@@ -99,7 +109,7 @@ std::vector<LevelWindow> LevelTest::candidates() {
       if (width_mm > resolution_mm_ && width_mm > kWidestShare * from_mm) continue;
       for (const Millimetres num_beside : kBeside) {
         LevelWindow window{from_mm, from_mm + width_mm, num_beside};
-        window.log_error = log_chernoff(weight(from_mm, window.end_mm), denser_side(window), num_beside);
+        window.log_error = log_chernoff(weight(from_mm, window.end_mm), denser_side(window), window);
         if (window.log_error < std::log(kErrorPerSensor)) all.push_back(window);
       }
     }
@@ -135,7 +145,7 @@ bool LevelTest::is_level(LevelWindow& window) const {
   std::size_t stage_end = kFirstStage;
   for (std::size_t seen = 0; seen < num_sweeps;) {
     for (; seen < std::min(stage_end, num_sweeps); ++seen) views.add_sweep(seen);
-    window.log_error = log_chernoff(views.inside(), std::max(views.below(), views.above()), window.num_beside);
+    window.log_error = log_chernoff(views.inside(), std::max(views.below(), views.above()), window);
     if (window.log_error < allowed) return true;
     const double at_most = kSlack * window.log_error * static_cast<double>(num_sweeps) / static_cast<double>(seen);
     if (views.is_enough() || at_most > allowed) return false;  // views become rarer, not more

@@ -22,9 +22,10 @@ struct LevelWindow {
 /// Null hypothesis: fragments are surfaces. Each has a weight of one, spread over its readings. Of the densest case, a
 /// flat wall seen square-on from d, the beams between d and d + w span an angle of sqrt(2 w / d), those from d to
 /// d + (n + 1) w one of sqrt(2 (n + 1) w / d): of a window and the n windows on its denser side, the window holds at
-/// most a share of 1 / sqrt(n + 1). The independent units are fragments in views that differ; turning on the spot or
-/// standing makes no new view. By how much the share is exceeded is judged by Hoeffding's form of the Chernoff bound.
-/// Half of the error that is allowed is for windows at the shortest and the longest readings, where levels usually are.
+/// most a share of 1 / sqrt(n + 1) (somewhat more where w is not small beside d). The independent units are fragments
+/// in views that differ; turning on the spot or standing makes no new view. By how much the share is exceeded is judged
+/// by Hoeffding's form of the Chernoff bound. Half of the error that is allowed is for windows at the shortest and the
+/// longest readings, where levels usually are.
 class LevelTest {
  public:
   explicit LevelTest(RangeSample& sample);
