@@ -8,19 +8,19 @@
 namespace shapemap {
 namespace {
 
-constexpr std::size_t kComparedBeams = 64;
+constexpr std::size_t kComparedBeams = 128;
 constexpr std::size_t kFewestCompared = 8;  // with fewer, a view counts as seen before
 constexpr double kSameShare = 0.4;         // of readings that agree: people may walk through a view that stays the same
 constexpr double kSame_mm = 50.0;          // the noise of the roughest sensors,
 constexpr double kSameOfRange = 0.05;      // and by so much of the range must the robot have moved
-constexpr double kClearlyLess = 0.8;       // the difference of a robot that stood, as a share of that if it turned
+constexpr double kClearly = 3.0;           // standard deviations by which a robot rather stood than turned
 constexpr std::size_t kEnoughViews = 512;  // in a zone
 constexpr std::size_t kGlance = 16;        // if none of so many readings agree, no more are compared
 
 }  // namespace
 
-DistinctViews::DistinctViews(const RangeSample& sample, const LevelWindow& window, Millimetres side_mm)
-    : sample_(sample), window_(window), side_mm_(side_mm) {
+DistinctViews::DistinctViews(const RangeSample& sample, const LevelWindow& window)
+    : sample_(sample), window_(window), side_mm_(window.num_beside * window.width_mm()) {
   const std::size_t num_sweeps = std::max<std::size_t>(1, sample.sweeps().size());
   stride_ = std::max<std::size_t>(1, static_cast<std::size_t>(0.618 * static_cast<double>(num_sweeps)));
   while (std::gcd(stride_, num_sweeps) != 1) ++stride_;
@@ -68,6 +68,11 @@ bool DistinctViews::Likeness::is_alike() const {
   return compared < kFewestCompared || static_cast<double>(same) >= kSameShare * static_cast<double>(compared);
 }
 
+double DistinctViews::Likeness::variance_of_mean() const {
+  const auto count = std::max<double>(1.0, static_cast<double>(compared));
+  return std::max(0.0, sum_of_squares / count - mean() * mean()) / count;
+}
+
 bool DistinctViews::is_same(const View& a, const View& b) const {
   const double step_rad = sample_.sweeps()[b.sweep].step_rad;
   const double middle_of_b = b.middle * step_rad / sample_.sweeps()[a.sweep].step_rad;  // in beams of a
@@ -77,7 +82,8 @@ bool DistinctViews::is_same(const View& a, const View& b) const {
   const Likeness turned = likeness(a, a.middle, b, b.middle);
   if (!turned.is_alike()) return false;
   const Likeness standing = likeness(a, middle_of_b, b, b.middle);
-  return !(standing.is_alike() && standing.difference < kClearlyLess * turned.difference);
+  const double deviation = std::sqrt(standing.variance_of_mean() + turned.variance_of_mean());
+  return !standing.is_alike() || turned.mean() - standing.mean() <= kClearly * deviation;
 }
 
 DistinctViews::Likeness DistinctViews::likeness(const View& a, double middle_a, const View& b, double middle_b) const {
@@ -100,10 +106,10 @@ DistinctViews::Likeness DistinctViews::likeness(const View& a, double middle_a, 
     if (likeness.compared == kGlance && likeness.same == 0) return likeness;
     ++likeness.compared;
     const double difference = std::abs(a_mm - b_mm) / (kSame_mm + kSameOfRange * std::min(a_mm, b_mm));
-    likeness.difference += std::min(difference, 1.0);
+    likeness.sum += std::min(difference, 1.0);
+    likeness.sum_of_squares += std::min(difference, 1.0) * std::min(difference, 1.0);
     if (difference <= 1.0) ++likeness.same;
   }
-  likeness.difference /= std::max<double>(1.0, static_cast<double>(likeness.compared));
   return likeness;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -16,7 +17,7 @@ namespace shapemap {
 /// goes on different beams while the robot stands are different views.
 class DistinctViews {
  public:
-  DistinctViews(const RangeSample& sample, const LevelWindow& window, Millimetres side_mm);
+  DistinctViews(const RangeSample& sample, const LevelWindow& window);
 
   /// Sweep number `turn` in an order that is spread over the whole sample, so that any first part stands for all.
   void add_sweep(std::size_t turn);
@@ -48,8 +49,11 @@ class DistinctViews {
   struct Likeness {
     std::size_t compared = 0;
     std::size_t same = 0;
-    double difference = 0.0;  ///< mean, as a share of the tolerance, at most 1
+    double sum = 0.0;  ///< of differences, as shares of the tolerance, at most 1 each
+    double sum_of_squares = 0.0;
     bool is_alike() const;
+    double mean() const { return sum / std::max<double>(1.0, static_cast<double>(compared)); }
+    double variance_of_mean() const;
   };
   bool is_same(const View& a, const View& b) const;
   /// Of two sweeps, where beam `middle_a` of the one is laid on `middle_b` of the other.

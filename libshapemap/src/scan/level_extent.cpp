@@ -12,6 +12,7 @@ constexpr double kFewestOfLevel = 0.002;  // rarer distances are odd readings be
 constexpr double kTimesAround = 2.5;      // by which surfaces may be denser than around
 constexpr double kSigmas = 5.0;           // by which a distance has more readings than those around
 constexpr double kMostOfLevel = 0.9;      // so much of a level is made of single distances, or it is spread evenly
+constexpr Millimetres kBeside = 8;        // widths on each side that tell what is usual
 
 /// How often each distance around a window was read.
 class Readings {
@@ -46,14 +47,21 @@ class Readings {
     }
     return fullest_mm;
   }
-  /// Of the denser side.
-  double mean_count_beside() const {
-    const double below = count(first_mm_, window_.from_mm);
-    const double above = count(window_.end_mm, end_mm());
-    return std::max(below, above) / std::max(1, window_.from_mm - first_mm_);
+  /// What an interval of `width_mm` usually holds on the denser side; the rest of a level may be on one of them.
+  double usual_beside(Millimetres width_mm) const {
+    return std::max(median_count(first_mm_, window_.from_mm, width_mm),
+                    median_count(window_.end_mm, end_mm(), width_mm));
   }
 
  private:
+  double median_count(Millimetres from_mm, Millimetres end_mm, Millimetres width_mm) const {
+    std::vector<double> counts;
+    for (; from_mm + width_mm <= end_mm; from_mm += width_mm) counts.push_back(count(from_mm, from_mm + width_mm));
+    if (counts.empty()) return 0.0;
+    const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
+    std::nth_element(counts.begin(), middle, counts.end());
+    return *middle;
+  }
   static std::size_t index(Millimetres at) { return static_cast<std::size_t>(at); }
 
   LevelWindow window_;
@@ -65,9 +73,9 @@ class Readings {
 
 LevelExtent extent_of(const std::vector<SubScan*>& scans, const LevelWindow& window, Millimetres resolution_mm) {
   const Millimetres gap_mm = std::max(resolution_mm, window.width_mm());
-  const Readings readings(scans, window, 2 * gap_mm);
+  const Readings readings(scans, window, kBeside * gap_mm);
   const double in_window = readings.count(window.from_mm, window.end_mm);
-  const double around = readings.mean_count_beside() * resolution_mm;  // all of them may lie on one distance
+  const double around = readings.usual_beside(resolution_mm);  // all of them may lie on one distance
   const double fewest = std::max(kTimesAround * around + kSigmas * std::sqrt(around) + 1.0, kFewestOfLevel * in_window);
 
   double of_single = 0.0;

@@ -12,19 +12,20 @@ namespace shapemap {
 struct LevelWindow {
   Millimetres from_mm = 0;
   Millimetres end_mm = 0;
-  double log_error = 0.0;  ///< bound of the logarithm of the probability that real surfaces look like this
-
+  Millimetres num_beside = 0;  ///< what is compared with on each side, in widths
+  double log_error = 0.0;      ///< bound of the logarithm of the probability that real surfaces look like this
   Millimetres width_mm() const { return end_mm - from_mm; }
 };
 
 /// Looks for distances at which there are more fragments than surfaces can make, in a sample of one sensor's sweeps.
 ///
 /// Null hypothesis: fragments are surfaces. Each has a weight of one, spread over its readings. Of the densest case, a
-/// flat wall seen square-on from d, the beams between d and d + w span an angle of sqrt(2 w / d), those up to 8 w
-/// farther another 2 sqrt(2 w / d): a window can hold at most half as much as the eight windows on one of its sides.
-/// The independent units are fragments in views that differ; turning on the spot or standing makes no new view. The
-/// weight in the window, given that of window and denser side, then exceeds a third with a probability that Hoeffding's
-/// form of the Chernoff bound limits.
+/// flat wall seen square-on from d, the beams between d and d + w span an angle of sqrt(2 w / d), those from d to
+/// d + (n + 1) w one of sqrt(2 (n + 1) w / d): of a window and the n windows on its denser side, the window holds at
+/// most a share of 1 / sqrt(n + 1) (somewhat more where w is not small beside d). The independent units are fragments
+/// in views that differ; turning on the spot or standing makes no new view. By how much the share is exceeded is judged
+/// by Hoeffding's form of the Chernoff bound. Half of the error that is allowed is for windows at the shortest and the
+/// longest readings, where levels usually are.
 class LevelTest {
  public:
   explicit LevelTest(RangeSample& sample);
@@ -40,7 +41,9 @@ class LevelTest {
   void add_up_weights();
   void find_resolution();
   double weight(Millimetres from_mm, Millimetres end_mm) const;
-  double share_of_side(Millimetres from_mm, Millimetres width_mm) const;
+  double denser_side(const LevelWindow& window) const;
+  bool is_even(Millimetres range_mm) const;
+  double allowed_log_error(const LevelWindow& window) const;
   std::vector<LevelWindow> candidates();
   bool is_level(LevelWindow& window) const;
 

@@ -35,8 +35,9 @@ FarReadings readings_beyond(const std::vector<SubScan*>& scans, Millimetres from
       Millimetres range_mm = to_mm(range_m, *scan);
       if (range_mm > 0) ++far.num_all;
       if (!is_far(range_mm)) range_mm = 0;
-      const bool follows = range_mm > 0 && before_mm > 0 &&
-                           std::abs(range_mm - before_mm) <= continuity_mm(std::min(range_mm, before_mm), step_rad, 1);
+      const bool follows =
+          range_mm > 0 && before_mm > 0 &&
+          std::abs(range_mm - before_mm) <= continuity_mm(std::min(range_mm, before_mm), step_rad, 1, kUsualNoise_mm);
       if (range_mm > 0) ++far.num_readings;
       if (follows) far.num_in_order += before_counted ? 1 : 2;
       before_mm = range_mm;

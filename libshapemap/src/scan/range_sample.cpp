@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "shapemap/scan/returns.hpp"
 
@@ -13,8 +14,10 @@ constexpr std::size_t kMostSampled = 400'000;  // readings: a level on 0.1 % of 
 constexpr std::size_t kFewestSweeps = 1000;    // so many views are kept even of sensors with a great many beams
 constexpr double kSteepest = 2.0;              // tangent of the angle of incidence that still counts as one surface
 constexpr double kMostOfRange = 0.1;           // the same for widely spaced beams, as a share of the range
-constexpr double kNoise_mm = 50.0;             // of the roughest sensors
-constexpr std::size_t kMostBridged = 8;        // beams without a reading inside of a fragment
+constexpr double kMostNoise_mm = 300.0;        // four standard deviations of a difference, where readings have 5 cm
+constexpr double kNoisePerBend = 3.5;          // four standard deviations, by the median of second differences
+constexpr std::size_t kFewestBends = 100;
+constexpr std::size_t kMostBridged = 8;  // beams without a reading inside of a fragment
 
 }  // namespace
 
@@ -33,9 +36,9 @@ double beam_step_rad(const SubScan& scan) {
   return step_rad > 0.0 && step_rad <= widest_rad ? step_rad : widest_rad;
 }
 
-Millimetres continuity_mm(Millimetres range_mm, double step_rad, std::size_t num_beams) {
+Millimetres continuity_mm(Millimetres range_mm, double step_rad, std::size_t num_beams, double noise_mm) {
   const double share = std::min(kSteepest * step_rad * static_cast<double>(num_beams), kMostOfRange);
-  return static_cast<Millimetres>(share * range_mm + kNoise_mm);
+  return static_cast<Millimetres>(share * range_mm + noise_mm);
 }
 
 RangeSample::RangeSample(const std::vector<SubScan*>& scans) {
@@ -55,7 +58,26 @@ RangeSample::RangeSample(const std::vector<SubScan*>& scans) {
     sweeps_.push_back(sweep);
   }
   for (const Millimetres range_mm : ranges_mm_) longest_mm_ = std::max(longest_mm_, range_mm);
+  estimate_noise();
   cut_into_fragments();
+}
+
+void RangeSample::estimate_noise() {
+  std::vector<Millimetres> bends_mm;
+  for (const Sweep& sweep : sweeps_) {
+    const Millimetres* readings_mm = readings(sweep);
+    for (std::size_t beam = 2; beam < sweep.size; beam += 3) {
+      const Millimetres a_mm = readings_mm[beam - 2];
+      const Millimetres b_mm = readings_mm[beam - 1];
+      const Millimetres c_mm = readings_mm[beam];
+      if (a_mm > 0 && b_mm > 0 && c_mm > 0 && (a_mm != b_mm || b_mm != c_mm))
+        bends_mm.push_back(std::abs(a_mm - 2 * b_mm + c_mm));
+    }
+  }
+  if (bends_mm.size() < kFewestBends) return;
+  const auto middle = bends_mm.begin() + static_cast<std::ptrdiff_t>(bends_mm.size() / 2);
+  std::nth_element(bends_mm.begin(), middle, bends_mm.end());
+  noise_mm_ = std::clamp(kNoisePerBend * *middle, kUsualNoise_mm, kMostNoise_mm);
 }
 
 void RangeSample::remove(Millimetres from_mm, Millimetres to_mm) {
@@ -84,8 +106,8 @@ void RangeSample::cut(std::size_t index) {
     if (current.num_readings > 0) {
       const std::size_t gap = beam - current.last;
       const Millimetres before_mm = readings_mm[current.last];
-      if (gap <= kMostBridged + 1 &&
-          std::abs(range_mm - before_mm) <= continuity_mm(std::min(range_mm, before_mm), sweep.step_rad, gap)) {
+      if (gap <= kMostBridged + 1 && std::abs(range_mm - before_mm) <=
+                                         continuity_mm(std::min(range_mm, before_mm), sweep.step_rad, gap, noise_mm_)) {
         current.last = beam;
         ++current.num_readings;
         current.nearest_mm = std::min(current.nearest_mm, range_mm);

@@ -18,7 +18,10 @@ Millimetres to_mm(float range_m, const SubScan& scan);
 double beam_step_rad(const SubScan& scan);
 
 /// By how much two readings may differ that `num_beams` lie between, if one surface goes on from one to the other.
-Millimetres continuity_mm(Millimetres range_mm, double step_rad, std::size_t num_beams);
+Millimetres continuity_mm(Millimetres range_mm, double step_rad, std::size_t num_beams, double noise_mm);
+
+/// Of the difference of two readings of one surface, at most, in a sensor that nothing is known of.
+inline constexpr double kUsualNoise_mm = 50.0;
 
 /// A run of neighbouring beams of one sweep whose readings continue each other: what is seen of one surface.
 struct Fragment {
@@ -55,6 +58,7 @@ class RangeSample {
   double largest_step_rad() const { return largest_step_rad_; }
 
  private:
+  void estimate_noise();
   void cut_into_fragments();
   void cut(std::size_t index);
 
@@ -63,6 +67,7 @@ class RangeSample {
   std::vector<Fragment> fragments_;
   Millimetres longest_mm_ = 0;
   double largest_step_rad_ = 0.0;
+  double noise_mm_ = kUsualNoise_mm;
 };
 
 }  // namespace shapemap
