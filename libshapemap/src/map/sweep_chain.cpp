@@ -35,8 +35,9 @@ constexpr double kUsualSlack_m = 0.004;
 /// And by so much, the chain may have lost its way.
 constexpr double kLost_m = 0.07;
 
-constexpr SweepFitOptions kTracking{0.5, 0.15, 5, 2, 1};
-constexpr SweepFitOptions kFinish{0.3, 0.08, 6, 1, 1};
+constexpr SweepFitOptions kTracking{0.5, 0.15, 5, 4e-3, 2, 1};
+constexpr SweepFitOptions kSettling{0.3, 0.12, 2, 2e-4, 2, 1};
+constexpr SweepFitOptions kFinish{0.12, 0.08, 3, 2e-4, 1, 1};
 
 class Chain {
  public:
@@ -255,12 +256,14 @@ SweepMotion sweep_motion(const std::vector<Sweep>& sweeps, double period_s, int 
     check(i);
     chain.extend(i);
   }
-  SweepFitOptions finish = kFinish;
-  finish.threads = threads;
   check(sweeps.size());
-  fit_sweeps(sweeps, 0, sweeps.size(), 0, finish, chain.trajectory());
+  const auto fit = [&](SweepFitOptions options, SweepTrajectory& trajectory) {
+    options.threads = threads;
+    fit_sweeps(sweeps, 0, sweeps.size(), 0, options, trajectory);
+  };
+  fit(kSettling, chain.trajectory());
   SweepTrajectory trajectory = chain.trajectory().refined();
-  fit_sweeps(sweeps, 0, sweeps.size(), 0, finish, trajectory);
+  fit(kFinish, trajectory);
   SweepMotion motion{trajectory, std::vector<double>(sweeps.size(), 0.0)};
   parallel_for(sweeps.size(), threads, [&](std::size_t i) {
     if (i == 0) return;

@@ -25,9 +25,6 @@ constexpr double kJerk_rad_s3 = 100.0;
 constexpr double kTrustedShareOfGate = 0.3;
 const double kCosTangentGate = std::cos(35 * kDegree);
 
-/// Steps below this change nothing that matters [m, rad].
-constexpr double kStill = 2e-4;
-
 /// Where a sweep's points are, and what they depend on.
 struct Linearised {
   PlacedSweep placed;
@@ -245,7 +242,7 @@ void fit_sweeps(const std::vector<Sweep>& sweeps, std::size_t first, std::size_t
                                                           1.0 / static_cast<double>(options.iterations - 1))
                                                : 1.0;
   for (int k = 0; k < options.iterations; ++k, gate_m *= shrink) {
-    if (fit.iterate(gate_m) < kStill) break;
+    if (fit.iterate(gate_m) < options.still) break;
   }
 }
 

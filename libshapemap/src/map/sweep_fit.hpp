@@ -13,6 +13,7 @@ struct SweepFitOptions {
   double first_gate_m = 0.5;
   double last_gate_m = 0.12;
   int iterations = 6;
+  double still = 2e-4;     ///< steps below this change nothing that matters [m, rad]
   std::size_t stride = 1;  ///< each so manieth point looks for its partner
   int threads = 1;
 };

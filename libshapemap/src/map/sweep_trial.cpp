@@ -14,8 +14,9 @@ namespace {
 
 /// Stretches of so many sweeps, not overlapping; so many are looked at, and so many of these judged.
 constexpr std::size_t kStretch = 4;
-constexpr std::size_t kLookedAt = 64;
+constexpr std::size_t kLookedAt = 48;
 constexpr std::size_t kJudged = 24;
+constexpr std::size_t kFirstJudged = 8;   ///< show whether the rest is worth the effort
 constexpr std::size_t kLeastJudged = 13;  ///< fewer could not be sure of anything by kError
 constexpr std::size_t kPoints = 120;
 
@@ -71,23 +72,43 @@ std::vector<SweepRun> fastest(const std::vector<SweepRun>& stretches, const std:
   return chosen;
 }
 
+/// A row for each stretch: the misfit of its sweeps as they are, and by each of the candidates.
+using Rows = std::vector<std::vector<double>>;
+
+std::vector<double> misfits_of(const Log& log, const SweepRun& stretch, const std::vector<BeamTiming>& candidates,
+                               double period_s, const ReturnOptions& returns) {
+  std::vector<double> row{tried(log, stretch, {}, period_s, returns).misfit_m};
+  for (const BeamTiming& candidate : candidates) {
+    row.push_back(tried(log, stretch, candidate, period_s, returns).misfit_m);
+  }
+  return row;
+}
+
 /// In how many rows column `a` has less than column `b`.
-std::size_t num_less(const std::vector<std::vector<double>>& rows, std::size_t a, std::size_t b) {
+std::size_t num_less(const Rows& rows, std::size_t a, std::size_t b) {
   return static_cast<std::size_t>(
       std::count_if(rows.begin(), rows.end(), [&](const auto& row) { return row[a] < row[b]; }));
 }
 
 /// By how much column `b` is less than column `a`, row by row.
-std::vector<double> gains_of(const std::vector<std::vector<double>>& rows, std::size_t a, std::size_t b) {
+std::vector<double> gains_of(const Rows& rows, std::size_t a, std::size_t b) {
   std::vector<double> gains;
   for (const auto& row : rows) gains.push_back(row[a] - row[b]);
   return gains;
 }
 
-double mean_of(const std::vector<std::vector<double>>& rows, std::size_t column) {
+double mean_of(const Rows& rows, std::size_t column) {
   double sum = 0.0;
   for (const auto& row : rows) sum += row[column];
   return sum / std::max<double>(1.0, static_cast<double>(rows.size()));
+}
+
+/// Whether any of the candidates is better in the mean; if not, a verdict for it is not to be expected.
+bool promises_something(const Rows& rows) {
+  for (std::size_t c = 1; c < rows.front().size(); ++c) {
+    if (mean_of(rows, c) < mean_of(rows, 0)) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -132,20 +153,22 @@ BeamTiming best_timing(const Log& log, const std::vector<SweepRun>& runs, double
   const BeamTiming unless_refuted = candidates.front().told ? candidates.front() : BeamTiming{};
   if (judged.size() < kLeastJudged) return unless_refuted;
 
-  // Column 0: as the scans are.
-  std::vector<std::vector<double>> misfits_m(judged.size(), std::vector<double>(candidates.size() + 1));
-  parallel_for(judged.size(), threads, [&](std::size_t i) {
-    misfits_m[i][0] = tried(log, judged[i], {}, period_s, returns).misfit_m;
-    for (std::size_t c = 0; c < candidates.size(); ++c) {
-      misfits_m[i][c + 1] = tried(log, judged[i], candidates[c], period_s, returns).misfit_m;
-    }
-  });
-  if (!observer.keep_going()) throw Interrupted();
+  const auto judge = [&](std::size_t first, std::size_t last, Rows& rows) {
+    rows.resize(last);
+    parallel_for(last - first, threads, [&](std::size_t i) {
+      rows[first + i] = misfits_of(log, judged[first + i], candidates, period_s, returns);
+    });
+    if (!observer.keep_going()) throw Interrupted();
+  };
+  Rows misfits_m;
+  judge(0, std::min(kFirstJudged, judged.size()), misfits_m);
+  if (candidates.front().told || promises_something(misfits_m)) judge(misfits_m.size(), judged.size(), misfits_m);
   std::size_t best = 1;
   for (std::size_t c = 2; c <= candidates.size(); ++c) {
     const bool is_surely_less = chance_of_gains(gains_of(misfits_m, best, c)) < kError;
     if (is_surely_less && mean_of(misfits_m, c) < mean_of(misfits_m, best)) best = c;
   }
+  verdict.num_judged = misfits_m.size();
   verdict.num_better = num_less(misfits_m, best, 0);
   verdict.misfit_before_m = mean_of(misfits_m, 0);
   verdict.misfit_after_m = mean_of(misfits_m, best);
