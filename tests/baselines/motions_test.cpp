@@ -21,7 +21,7 @@ class Motions : public testing::Test {
  protected:
   Motions() {
     for (int i = 0; i < 6; ++i) {
-      log_.positions.push_back({100.0 + 0.5 * i, {}, std::nullopt});
+      log_.positions.push_back({100.0 + 0.5 * i, {}, std::nullopt, std::nullopt});
       poses_.push_back({0.3 * i, 0.1 * i * i, wrap_angle(0.9 * i)});
     }
   }

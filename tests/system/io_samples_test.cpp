@@ -43,7 +43,7 @@ TEST_P(Samples, AreReadWhole) {
   EXPECT_NEAR(summary.duration_s, expected.duration_s, 1e-6);
   ASSERT_EQ(summary.sensors.size(), 1U);
   EXPECT_EQ(summary.sensors[0].num_sub_scans, expected.num_positions);
-  EXPECT_EQ(summary.sensors[0].num_beams, expected.num_beams);
+  EXPECT_EQ(summary.sensors[0].most_beams, expected.num_beams);
   EXPECT_NEAR(summary.sensors[0].fov_rad, kPi, 1e-6);
   EXPECT_EQ(summary.sensors[0].max_range_m, 80.0);
   EXPECT_NEAR(summary.sensors[0].longest_return_m, expected.longest_return_m, 1e-4);
@@ -90,7 +90,7 @@ TEST_P(CarmenSamples, AreReadWhole) {
   EXPECT_EQ(summary.format, "carmen");
   EXPECT_EQ(summary.num_positions, expected.num_positions);
   ASSERT_EQ(summary.sensors.size(), 1U);
-  EXPECT_EQ(summary.sensors[0].num_beams, expected.num_beams);
+  EXPECT_EQ(summary.sensors[0].most_beams, expected.num_beams);
   EXPECT_NEAR(summary.sensors[0].fov_rad, static_cast<double>(expected.num_beams - 1) * expected.step_deg * kDegree,
               1e-9);
   // Below each sensor's "no return" level, and not lower than its longest walls.

@@ -193,7 +193,7 @@ TEST(Summarise, CountsWhatTheLogHolds) {
   ASSERT_EQ(summary.sensors.size(), 2U);
   EXPECT_EQ(summary.sensors[0].label, "laser");
   EXPECT_EQ(summary.sensors[0].num_sub_scans, 9U);
-  EXPECT_EQ(summary.sensors[0].num_beams, 101U);
+  EXPECT_EQ(summary.sensors[0].most_beams, 101U);
   EXPECT_NEAR(summary.sensors[0].fov_rad, 100 * kDegree, 1e-12);
   EXPECT_EQ(summary.sensors[0].max_range_m, 20.0);
   EXPECT_EQ(summary.sensors[0].shortest_return_m, 1.0);

@@ -26,7 +26,7 @@ SubScan three_beams(float right_m, float ahead_m, float left_m) {
 
 Log log_of(const SubScan& sub_scan) {
   Log log;
-  log.positions.push_back({1.0, {sub_scan}, std::nullopt});
+  log.positions.push_back({1.0, {sub_scan}, std::nullopt, std::nullopt});
   return log;
 }
 
@@ -142,8 +142,8 @@ TEST(GridMap, WithoutAPoseThereIsNoMap) {
 /// Looks ahead along x: what others saw up to 2 m, and one that contradicts them.
 struct Disputed {
   Disputed() {
-    log.positions.push_back({1.0, {three_beams(1.0F, 2.0F, 1.0F)}, std::nullopt});
-    log.positions.push_back({2.0, {three_beams(1.0F, 3.0F, 0.5F)}, std::nullopt});
+    log.positions.push_back({1.0, {three_beams(1.0F, 2.0F, 1.0F)}, std::nullopt, std::nullopt});
+    log.positions.push_back({2.0, {three_beams(1.0F, 3.0F, 0.5F)}, std::nullopt, std::nullopt});
     placed = {placed_at({0.05, 0.05, 0.0}, 0), placed_at({0.05, 0.05, 0.0}, 0), placed_at({0.05, 0.05, 0.0}, 1)};
   }
   GridMap map(Contradicting what) const { return build_grid_map(log, placed, {}, GridMapOptions{0.1, what}); }

@@ -33,7 +33,7 @@ struct World {
     sub_scan.ranges_m = {1.0F, 3.0F, NAN};
     sub_scan.first_angle_rad = -kPi / 2;
     sub_scan.angle_step_rad = kPi / 2;
-    log.positions.push_back({12.5, {sub_scan}, std::nullopt});
+    log.positions.push_back({12.5, {sub_scan}, std::nullopt, std::nullopt});
     placed.push_back({0, 12.5, {2.0, 1.0, kPi / 2}, {Pose2{}}});
   }
   GridMap map() const { return build_grid_map(log, placed, ReturnOptions{}, GridMapOptions{0.07}); }

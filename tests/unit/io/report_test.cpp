@@ -15,7 +15,7 @@ using Json = nlohmann::json;
 class Report : public testing::Test {
  protected:
   Report() {
-    for (const double timestamp_s : {10.0, 11.0, 12.5}) log_.positions.push_back({timestamp_s, {SubScan{}}, {}});
+    for (const double timestamp_s : {10.0, 11.0, 12.5}) log_.positions.push_back({timestamp_s, {SubScan{}}, {}, {}});
     log_.format = "carmen";
     result_.fragments.resize(2);
     result_.fragments[0].positions = {{0, 10.0, {}, {Pose2{}}}, {1, 11.0, {1.0, 2.0, kPi / 2}, {Pose2{}}}};
@@ -184,7 +184,7 @@ TEST_F(Report, TellsHowEachScanGoesWithTheRest) {
   result_.fragments[0].positions[1].agreement = {0.5, 0.25, 0.125, true};
   result_.fragments[1].positions[0].agreement = {0.0, 0.0, 1.0, true};
   result_.positions.emplace_back().position_index = 3;
-  log_.positions.push_back({13.0, {SubScan{}}, {}});
+  log_.positions.push_back({13.0, {SubScan{}}, {}, {}});
   result_.times.agreement_s = 0.5;
   const Json report = parsed();
   EXPECT_EQ(report["num_contradicting"], 1) << "of those in the map";

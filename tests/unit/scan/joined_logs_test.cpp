@@ -10,7 +10,7 @@ Log log_of(std::size_t count, const std::string& format, double first_s) {
   Log log;
   log.format = format;
   log.warnings = {format + " is odd"};
-  for (std::size_t i = 0; i < count; ++i) log.positions.push_back({first_s + static_cast<double>(i), {}, {}});
+  for (std::size_t i = 0; i < count; ++i) log.positions.push_back({first_s + static_cast<double>(i), {}, {}, {}});
   return log;
 }
 
