@@ -16,8 +16,8 @@
 namespace shapemap {
 namespace {
 
-/// No laser goes round more slowly.
-constexpr double kLongestPeriod_s = 1.0;
+/// No laser goes round more slowly. Scans that are farther apart were picked, and logs without a clock count seconds.
+constexpr double kLongestPeriod_s = 0.6;
 
 /// Of a sweep that fills its period: sensors that are read less often than they go round, or that rest in between.
 constexpr std::array<double, 3> kShares{0.75, 0.5, 0.25};
