@@ -12,6 +12,9 @@ constexpr double kSurfaceGap_m = 0.10;
 constexpr double kSurfaceGapPerRange = 0.06;
 constexpr std::size_t kSurfacePoints = 3;  ///< to either side
 
+/// A sweep is bent by less than this share of the turn of its beams, and of the usual distance of what it sees.
+constexpr double kMostBent = 0.3;
+
 /// Beyond this, a distance only says that there is no partner.
 constexpr double kMisfitLimit_m = 0.25;
 
@@ -61,6 +64,14 @@ PointIndex::Neighbour SweepNeighbours::nearest(const Point2& p_m, double gate_m)
   const PointIndex::Neighbour near = sweep_.index.nearest(p_m, within_m);
   if (near.distance_m <= gate_m) last_ = near.point;
   return near;
+}
+
+bool is_wild(const Sweep& sweep, const SweepTrajectory& trajectory) {
+  const Eigen::Vector3d moved = trajectory.at(sweep.last_s) - trajectory.at(sweep.first_s);
+  if (sweep.last_s == sweep.first_s) return false;
+  // Written so that NaN is wild.
+  return !(std::abs(moved.z()) < kMostBent * sweep.turned_rad &&
+           moved.head<2>().norm() < std::max(kMostBent * sweep.usual_range_m, kSurfaceGap_m));
 }
 
 PlacedSweep placed_sweep(const Sweep& sweep, const SweepTrajectory& trajectory) {

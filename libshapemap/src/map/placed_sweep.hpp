@@ -23,8 +23,14 @@ struct Sweep {
   double stamp_s = 0.0;
   double first_s = 0.0;  ///< of its beams
   double last_s = 0.0;
+  double turned_rad = 0.0;     ///< by its beams, from the first to the last
+  double usual_range_m = 0.0;  ///< half of its hits are nearer
   std::vector<TimedPoint> points;
 };
+
+/// Whether a trajectory bends a sweep so much that what it shows is no place: a motion against the beams, as fast as
+/// they go round, would lay all of them on one line, and any scans would go together.
+bool is_wild(const Sweep& sweep, const SweepTrajectory& trajectory);
 
 /// A sweep as a trajectory places it: straight.
 struct PlacedSweep {

@@ -35,6 +35,9 @@ constexpr double kUsualSlack_m = 0.004;
 /// And by so much, the chain may have lost its way.
 constexpr double kLost_m = 0.07;
 
+/// More than any misfit.
+constexpr double kWild_m = 1.0;
+
 constexpr SweepFitOptions kTracking{0.5, 0.15, 5, 4e-3, 2, 1};
 constexpr SweepFitOptions kSettling{0.3, 0.12, 2, 2e-4, 2, 1};
 constexpr SweepFitOptions kFinish{0.12, 0.08, 3, 2e-4, 1, 1};
@@ -99,7 +102,10 @@ class Chain {
 
   double misfit(std::size_t first, std::size_t last) const {
     std::vector<PlacedSweep> placed;
-    for (std::size_t i = first; i < last; ++i) placed.push_back(placed_sweep(sweeps_[i], trajectory_));
+    for (std::size_t i = first; i < last; ++i) {
+      if (is_wild(sweeps_[i], trajectory_)) return kWild_m;
+      placed.push_back(placed_sweep(sweeps_[i], trajectory_));
+    }
     double sum_m = 0.0;
     for (std::size_t i = 1; i < placed.size(); ++i) sum_m += sweep_misfit(placed[i - 1], placed[i]);
     return sum_m / std::max<double>(1.0, static_cast<double>(placed.size()) - 1.0);
@@ -267,6 +273,10 @@ SweepMotion sweep_motion(const std::vector<Sweep>& sweeps, double period_s, int 
   SweepMotion motion{trajectory, std::vector<double>(sweeps.size(), 0.0)};
   parallel_for(sweeps.size(), threads, [&](std::size_t i) {
     if (i == 0) return;
+    if (is_wild(sweeps[i - 1], motion.trajectory) || is_wild(sweeps[i], motion.trajectory)) {
+      motion.misfit_m[i] = kWild_m;
+      return;
+    }
     motion.misfit_m[i] =
         sweep_misfit(placed_sweep(sweeps[i - 1], motion.trajectory), placed_sweep(sweeps[i], motion.trajectory));
   });

@@ -23,6 +23,23 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
+/// What the beams of the widest sub-scan go through.
+double turned_rad(const Position& position) {
+  double turned_rad = 0.0;
+  for (const SubScan& sub_scan : position.sub_scans) {
+    const std::size_t num = sub_scan.ranges_m.size();
+    if (num < 2) continue;
+    double lowest_rad = sub_scan.beam_angle_rad(0);
+    double highest_rad = lowest_rad;
+    for (std::size_t beam = 1; beam < num; ++beam) {
+      lowest_rad = std::min(lowest_rad, sub_scan.beam_angle_rad(beam));
+      highest_rad = std::max(highest_rad, sub_scan.beam_angle_rad(beam));
+    }
+    turned_rad = std::max(turned_rad, highest_rad - lowest_rad);
+  }
+  return turned_rad;
+}
+
 }  // namespace
 
 double usual_period_s(const Log& log, std::size_t first, std::size_t last) {
@@ -68,12 +85,16 @@ std::vector<Sweep> timed_sweeps(const Log& log, std::size_t first, std::size_t l
     sweep.stamp_s = position.timestamp_s - log.positions[first].timestamp_s;
     sweep.first_s = sweep.stamp_s;
     sweep.last_s = sweep.stamp_s;
+    std::vector<double> ranges_m;
     for (const SweepPoint& point : sweep_points(position, returns, max_points)) {
       const double time_s = sweep.stamp_s + timing.beam_s(position.sub_scans[point.sub_scan], point.beam);
       sweep.points.push_back({point.p_m, time_s, point.begins_line});
       sweep.first_s = std::min(sweep.first_s, time_s);
       sweep.last_s = std::max(sweep.last_s, time_s);
+      ranges_m.push_back(point.p_m.norm());
     }
+    sweep.turned_rad = turned_rad(position);
+    sweep.usual_range_m = median_of(std::move(ranges_m));
     sweeps.push_back(std::move(sweep));
   }
   return sweeps;
