@@ -85,7 +85,9 @@ TEST_P(CarmenSamples, AreReadWhole) {
   const std::filesystem::path path = std::filesystem::path(folder) / expected.name;
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is missing: nothing was tested";
   const Log log = read_log(path.string());
-  EXPECT_TRUE(log.warnings.empty());
+  // Some of these recordings have one time for all scans, and some times that were stamped late.
+  EXPECT_THAT(log.warnings, testing::Each(testing::HasSubstr("timestamps")));
+  EXPECT_LE(log.warnings.size(), 1U);
   const LogSummary summary = summarise(log);
   EXPECT_EQ(summary.format, "carmen");
   EXPECT_EQ(summary.num_positions, expected.num_positions);

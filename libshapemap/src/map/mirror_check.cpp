@@ -16,7 +16,7 @@ constexpr double kLeastTurn_rad = 5 * kDegree;
 /// Turns by more than this are not certain to be no turns the other way.
 constexpr double kMostTurn_rad = 150 * kDegree;
 
-constexpr double kWronglyRecorded = 0.25;
+constexpr double kByChance = 0.5;
 constexpr double kLogError = -13.8;  // 1e-6
 
 }  // namespace
@@ -26,10 +26,10 @@ bool TurnComparison::is_mirrored() const {
   const auto count = static_cast<double>(num_alike + num_opposite);
   if (count == 0.0) return false;
   const double share = static_cast<double>(num_opposite) / count;
-  if (share <= kWronglyRecorded) return false;
-  double divergence = share * std::log(share / kWronglyRecorded);
-  if (share < 1.0) divergence += (1.0 - share) * std::log((1.0 - share) / (1.0 - kWronglyRecorded));
-  return num_opposite > num_alike && -count * divergence < kLogError;
+  if (share <= kByChance) return false;
+  double divergence = share * std::log(share / kByChance);
+  if (share < 1.0) divergence += (1.0 - share) * std::log((1.0 - share) / (1.0 - kByChance));
+  return -count * divergence < kLogError;
 }
 
 TurnComparison compare_turns(const Log& log, const std::vector<PlacedPosition>& placed) {
@@ -48,7 +48,7 @@ TurnComparison compare_turns(const Log& log, const std::vector<PlacedPosition>& 
     const double larger_rad = std::max(std::abs(recorded_rad), std::abs(mapped_rad));
     if (larger_rad < kLeastTurn_rad) continue;
     since = &here;
-    if (smaller_rad < kLeastTurn_rad || larger_rad > kMostTurn_rad) continue;
+    if (smaller_rad < 0.5 * kLeastTurn_rad || larger_rad > kMostTurn_rad) continue;
     ++((recorded_rad > 0.0) == (mapped_rad > 0.0) ? turns.num_alike : turns.num_opposite);
   }
   return turns;

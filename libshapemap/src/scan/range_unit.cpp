@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace shapemap {
@@ -13,9 +14,9 @@ constexpr double kFarthestMiddle_m = 100.0;
 /// What is usual, as the middle of a log-normal distribution and its width: rooms, and the noise of lasers.
 constexpr double kUsualRange_m = 5.0;
 constexpr double kRangeFactor = 3.0;
-constexpr double kUsualRoughness_m = 0.007;
+/// The roughness is that of the smoothest tenth, about 0.3 times the noise of a reading.
+constexpr double kUsualRoughness_m = 0.0025;
 constexpr double kRoughnessFactor = 2.5;
-constexpr double kLeastRoughness = 0.5;  // of a unit
 
 /// No sensor measures nearer: a smaller limit was in metres.
 constexpr double kLeastMinRange_m = 0.01;
@@ -34,8 +35,9 @@ double quantile(std::vector<double>& values, double share) {
 bool is_reading(float range) { return std::isfinite(range) && range > 0.0F; }
 
 struct Readings {
-  double middle = 0.0;     ///< of the distances that occur
-  double roughness = 0.0;  ///< how much the smoother half of the surfaces deviates from straight, beam by beam
+  double middle = 0.0;  ///< of the distances that occur
+  /// How much the smoothest surfaces deviate from straight, beam by beam; at least half a step of the readings.
+  double roughness = 0.0;
 };
 
 Readings readings_of(const Log& log) {
@@ -53,10 +55,13 @@ Readings readings_of(const Log& log) {
       }
     }
   }
+  double step = std::numeric_limits<double>::infinity();
   // Each distance counts once, so that a code for "no return" does not, however often it stands there.
   std::sort(ranges.begin(), ranges.end());
   ranges.erase(std::unique(ranges.begin(), ranges.end()), ranges.end());
-  return {quantile(ranges, 0.5), quantile(bends, 0.25)};
+  for (std::size_t i = 1; i < ranges.size(); ++i) step = std::min(step, ranges[i] - ranges[i - 1]);
+  const double hidden = ranges.size() > 1 ? 0.5 * step : 0.0;
+  return {quantile(ranges, 0.5), std::max(quantile(bends, 0.1), hidden)};
 }
 
 double unusual(double value, double usual, double factor) {
@@ -67,10 +72,8 @@ double unusual(double value, double usual, double factor) {
 /// The log density of a log under a unit, but for what is the same for both.
 double log_density(const Readings& readings, RangeUnit unit) {
   const double scale = metres_per(unit);
-  // Readings that are whole numbers hide a roughness below one of them.
-  const double roughness = std::max(readings.roughness, kLeastRoughness);
   return -unusual(readings.middle * scale, kUsualRange_m, kRangeFactor) -
-         unusual(roughness * scale, kUsualRoughness_m, kRoughnessFactor);
+         unusual(readings.roughness * scale, kUsualRoughness_m, kRoughnessFactor);
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <optional>
 #include <utility>
 
+#include "shapemap/scan/returns.hpp"
+
 namespace shapemap {
 namespace {
 
@@ -63,15 +65,17 @@ std::optional<Order> order_by_time(const Times& times_s) {
   return order;
 }
 
-/// How different two scans look: the middle one of the differences of their readings.
+/// How different two scans look: the middle one of the differences of their readings. What hit nothing tells nothing.
 double difference_m(const Position& a, const Position& b) {
   if (a.sub_scans.empty() || b.sub_scans.empty()) return 0.0;
   const std::vector<float>& of_a = a.sub_scans.front().ranges_m;
   const std::vector<float>& of_b = b.sub_scans.front().ranges_m;
+  const RangeLimits limits_a = range_limits(a.sub_scans.front(), {});
+  const RangeLimits limits_b = range_limits(b.sub_scans.front(), {});
   std::vector<double> differences_m;
   for (std::size_t i = 0; i < std::min(of_a.size(), of_b.size()); ++i) {
-    const double difference = std::abs(static_cast<double>(of_a[i]) - of_b[i]);
-    if (std::isfinite(difference)) differences_m.push_back(difference);
+    if (!is_return(of_a[i], limits_a) || !is_return(of_b[i], limits_b)) continue;
+    differences_m.push_back(std::abs(static_cast<double>(of_a[i]) - of_b[i]));
   }
   if (differences_m.empty()) return 0.0;
   const auto middle = differences_m.begin() + static_cast<std::ptrdiff_t>(differences_m.size() / 2);

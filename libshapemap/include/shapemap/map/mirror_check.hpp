@@ -13,9 +13,8 @@ struct TurnComparison {
   std::size_t num_alike = 0;
   std::size_t num_opposite = 0;
 
-  /// Whether the scans must be mirrored: far more turns are opposite than odometry that slips could make so. A log
-  /// whose scans are right has that verdict with a probability below 1e-6 even if one of four turns is recorded
-  /// wrongly.
+  /// Whether the scans must be mirrored: more turns are opposite than would be, with a probability of 1e-6, if the
+  /// recorded headings had nothing to do with the motion.
   bool is_mirrored() const;
 };
 
