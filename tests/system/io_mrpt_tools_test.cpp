@@ -73,10 +73,10 @@ TEST(MrptTools, RawlogEditSeesOurPosesAsOdometry) {
 /// place.
 void restore_timestamps(const Log& ours, Log& theirs) {
   ASSERT_EQ(ours.positions.size(), theirs.positions.size());
+  for (std::size_t i = 1; i < ours.positions.size(); ++i) {
+    EXPECT_GT(theirs.positions[i].timestamp_s, theirs.positions[i - 1].timestamp_s);
+  }
   for (std::size_t i = 0; i < ours.positions.size(); ++i) {
-    if (i > 0) {
-      EXPECT_GT(theirs.positions[i].timestamp_s, theirs.positions[i - 1].timestamp_s);
-    }
     theirs.positions[i].timestamp_s = ours.positions[i].timestamp_s;
   }
 }

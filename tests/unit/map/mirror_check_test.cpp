@@ -41,11 +41,11 @@ Walk walk(int num_positions, double handedness, double slip_rad, double turn_rad
 TEST(MirrorCheck, TellsMirroredScansFromRightOnes) {
   for (const double turn_rad : {1 * kDegree, 10 * kDegree, 40 * kDegree}) {
     SCOPED_TRACE(turn_rad);
-    const Walk right = walk(400, 1.0, 0.3 * turn_rad, turn_rad);
+    const Walk right = walk(4000, 1.0, 0.3 * turn_rad, turn_rad);
     const TurnComparison of_right = compare_turns(right.log, right.placed);
     EXPECT_GT(of_right.num_alike, 10U);
     EXPECT_FALSE(of_right.is_mirrored());
-    const Walk mirrored = walk(400, -1.0, 0.3 * turn_rad, turn_rad);
+    const Walk mirrored = walk(4000, -1.0, 0.3 * turn_rad, turn_rad);
     EXPECT_TRUE(compare_turns(mirrored.log, mirrored.placed).is_mirrored());
   }
 }
