@@ -61,10 +61,10 @@ def by_rounded_time(path):
     return {round(time, 3): pose for time, pose in poses_by_time(read_tum(path)).items()}
 
 
-def check_walk(run, case, log, num_placed, max_ate_m, code=0):
+def check_walk(run, case, log, num_placed, max_ate_m, code=0, walk=WALK):
     done = run(log, "--out", "map.png", "--trajectory", "walk.tum")
     assert done.returncode == code, done.stderr
-    truth_path = case(WALK)
+    truth_path = case(walk)
     found, truth = by_rounded_time(truth_path.with_name("walk.tum")), by_rounded_time(truth_path)
     assert len(found) == num_placed
     assert len(set(found) & set(truth)) >= num_placed - 1  # points have times of their own
@@ -106,3 +106,24 @@ def test_a_ros2_bag_is_mapped_right(run, case, tmp_path, is_folder):
     log, said = convert(folder if is_folder else folder / "ros2_db3.db3")
     assert "60 scans of 360 beams" in said
     check_walk(run, case, log, 60, 0.03)
+
+
+@patience.without_sanitizers
+def test_a_walk_whose_sweeps_are_bent_is_straightened(run, case):
+    log, _ = convert(case("bag-handheld-sweep-distortion.bag"))
+    check_walk(run, case, log, 283, 0.015, walk="bag-handheld-sweep-distortion.tum")
+
+
+@patience.without_sanitizers
+def test_a_code_for_no_return_is_no_wall(run, case):
+    log = case("carmen-no-return-65.533.log")
+    assert "no returns  65.533 m" in run("info", log).stdout
+    check_walk(run, case, log, 300, 0.06, walk="carmen-no-return.tum")
+
+
+@patience.without_sanitizers
+def test_one_false_reading_does_not_make_a_large_picture(run, case, tmp_path):
+    log, _ = convert(case("bag-outlier-900m.bag"))
+    assert "1 of 28587 returns lies outside of the picture" in run(log, "--out", "map.pgm").stderr
+    width, height = (int(number) for number in (tmp_path / "map.pgm").read_bytes().split(maxsplit=3)[1:3])
+    assert width < 400 and height < 400
