@@ -37,7 +37,8 @@ Log with_straight_sweeps(Log log, const AlignArguments& arguments) {
   const MappingOptions& options = arguments.settings.mapping;
   ConsoleObserver observer(!arguments.quiet);
   std::vector<SweepVerdict> verdicts;
-  log = straightened(std::move(log), options.returns, options.deskew, options.chain.threads, observer, verdicts);
+  log = straightened(std::move(log), options.returns, options.deskew, arguments.settings.selection.every,
+                     options.chain.threads, observer, verdicts);
   observer.finish();
   log.warnings.insert(log.warnings.end(), observer.warnings().begin(), observer.warnings().end());
   return log;

@@ -21,13 +21,14 @@ struct MapRun {
   MapNotes notes;
 };
 
-void require_a_map(const MapArguments& arguments, const MapResult& result) {
+void require_a_map(const MapArguments& arguments, const MapResult& result, const std::vector<std::string>& warnings) {
   if (!result.placed().empty()) return;
   const std::string more =
       arguments.logs.size() > 1 ? " and " + std::to_string(arguments.logs.size() - 1) + " more" : "";
   std::string why = "'" + arguments.logs.front().path + "'" + more + ": none of " + (more.empty() ? "its " : "their ") +
                     std::to_string(result.positions.size()) + " positions can be placed; nothing written";
   if (!result.positions.empty()) why += " (the first: " + result.positions.front().reason + ")";
+  if (!warnings.empty()) why += "; " + warnings.front();
   throw InputError(why);
 }
 
@@ -55,8 +56,8 @@ std::vector<SweepVerdict> straighten(const MapArguments& arguments, LogSet& logs
   const MappingOptions& options = arguments.settings.mapping;
   ConsoleObserver observer(arguments.verbosity != Verbosity::kQuiet);
   std::vector<SweepVerdict> verdicts;
-  logs.log =
-      straightened(std::move(logs.log), options.returns, options.deskew, options.chain.threads, observer, verdicts);
+  logs.log = straightened(std::move(logs.log), options.returns, options.deskew, arguments.settings.selection.every,
+                          options.chain.threads, observer, verdicts);
   observer.finish();
   warnings.insert(warnings.end(), observer.warnings().begin(), observer.warnings().end());
   return verdicts;
@@ -106,7 +107,7 @@ int run_map(const MapArguments& arguments) {
   MapRun run = map_and_trace(logs, arguments, warnings, costs, outputs);
   const MapResult& result = run.result;
   costs.map_s = mapping.seconds();
-  require_a_map(arguments, result);
+  require_a_map(arguments, result, warnings);
 
   const Stopwatch writing;
   run.notes.drawn = prepare_outputs(arguments, logs, result, outputs);

@@ -136,10 +136,11 @@ def value_text(value: float) -> str:
 
 
 def values_text(values: Array) -> str:
-    """With the fewest decimals that read back as the same; what is minus infinite is no number of the format."""
+    """With the fewest decimals that read back as the same; what is minus infinite, which is how drivers say
+    "too near", becomes 0, which says as little."""
     wide = values.astype(np.float64)
     if np.isneginf(wide).any():
-        wide = np.where(np.isneginf(wide), np.nan, wide)
+        wide = np.where(np.isneginf(wide), 0.0, wide)
     finite = wide[np.isfinite(wide)]
     for decimals in range(2, MOST_DECIMALS + 1):
         if (np.round(finite, decimals).astype(values.dtype) == finite).all():

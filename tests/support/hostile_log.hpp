@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "shapemap/core/errors.hpp"
 #include "shapemap/core/observer.hpp"
 #include "shapemap/io/log_file.hpp"
+#include "shapemap/map/deskew.hpp"
 #include "shapemap/map/map_log.hpp"
 
 /// What is done with logs that may hold anything.
@@ -14,19 +17,23 @@ namespace shapemap::test {
 
 enum class Outcome { kMapped, kRefused };
 
-/// Reads the file and maps its first three positions. Whatever it holds, this ends with a result or an InputError; all
-/// else is a fault.
+/// Reads the file, straightens the sweeps of its first positions and maps three of them. Whatever it holds, this ends
+/// with a result or an InputError; all else is a fault.
 inline Outcome read_and_map(const std::string& path) {
+  constexpr std::size_t kStraightened = 8;
   constexpr std::size_t kFirst = 3;
   LogReadOptions reading;
   reading.fov_rad = kPi;  // which bare numbers need
   try {
     Log log = read_log(path, LogFormat::kAuto, reading);
     summarise(log);
-    log.positions.resize(std::min(log.positions.size(), kFirst));
+    log.positions.resize(std::min(log.positions.size(), kStraightened));
     MappingOptions options;
     options.chain.threads = 1;
     RunObserver observer;
+    std::vector<SweepVerdict> verdicts;
+    log = straightened(std::move(log), options.returns, options.deskew, 1, 1, observer, verdicts);
+    log.positions.resize(std::min(log.positions.size(), kFirst));
     map_log(log, options, observer);
     return Outcome::kMapped;
   } catch (const InputError&) {

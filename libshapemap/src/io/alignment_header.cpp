@@ -105,14 +105,15 @@ std::string text_difference(Lines found, Lines expected) {
     return "is of another log, or of other positions of it: of " + found["positions"] + ", not " +
            expected["positions"];
   }
-  if (found["readings"] != expected["readings"]) return "is of another log, or of other positions of it, just as many";
   std::string named;
   std::size_t count = 0;
   for (const auto& [name, value] : expected) {
-    if (found[name] == value) continue;
+    if (name == "readings" || found[name] == value) continue;
     if (++count <= kMostNamed) named += (count > 1 ? ", --" : "--") + name + " " + found[name] + " instead of " + value;
   }
-  if (count == 0) return "";
+  // Options may change what is read, so that these are named first.
+  const bool same_readings = found["readings"] == expected["readings"];
+  if (count == 0) return same_readings ? "" : "is of another log, or of other positions of it, just as many";
   return "was made with " + named + (count > kMostNamed ? " and more" : "");
 }
 
@@ -122,6 +123,7 @@ std::string state_header(const Log& log, const MappingOptions& options) {
   std::string text = "shapemap = " + std::string(kVersion) + "\npositions = " + std::to_string(log.positions.size()) +
                      "\nreadings = " + fingerprint(log) + "\n";
   const HypothesisSearchOptions& search = options.robust.search;
+  append_options(text, options.deskew);
   append_options(text, options.returns);
   append_options(text, options.polylines);
   append_options(text, options.shape);

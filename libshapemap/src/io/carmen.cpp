@@ -12,6 +12,7 @@
 #include "mount_pose.hpp"
 #include "shapemap/scan/beam_angles.hpp"
 #include "shapemap/scan/plausibility.hpp"
+#include "shapemap/scan/returns.hpp"
 #include "text.hpp"
 
 namespace shapemap {
@@ -95,7 +96,7 @@ class CarmenReader {
     const std::string_view name = words.next();
     if (name != "robot_front_laser_max" && name != "robot_frontlaser_max") return;
     const std::optional<double> value = parse_number(words.next());
-    if (value && std::isfinite(*value) && *value > 0.0) param_max_range_m_ = *value;
+    if (value && *value > 0.0 && *value < kLongestRange_m) param_max_range_m_ = *value;
   }
 
   /// What CARMEN has no field for; written by write_carmen().
@@ -124,6 +125,7 @@ class CarmenReader {
 
   void set_flaser_angles(SubScan& scan) {
     const std::size_t num_beams = scan.ranges_m.size();
+    if (num_beams == 0) return;
     if (options_.fov_rad > 0.0) {
       if (num_beams < 2) throw lines_.error("one reading has no field of view, expected two or more");
       scan.first_angle_rad = -options_.fov_rad / 2;

@@ -71,6 +71,14 @@ class FieldReader {
     return values;
   }
 
+  std::vector<double> finite_list(const std::string& what, double unit) {
+    std::vector<double> values = list(what, unit);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!std::isfinite(values[i])) throw lines_.error(what + " " + std::to_string(i + 1) + " is no finite number");
+    }
+    return values;
+  }
+
   std::vector<float> ranges_m() {
     std::vector<float> ranges_m;
     std::string_view word = words_.next();
@@ -216,10 +224,10 @@ SubScan read_nist_scan(Words& words, const LineReader& lines, const NistUnits& u
       scan.ranges_m = fields.ranges_m();
       has_ranges = true;
     } else if (field == "angles") {
-      lists.angles_rad = fields.list("angle", units.radians_per_unit);
+      lists.angles_rad = fields.finite_list("angle", units.radians_per_unit);
       lists.has_angles = true;
     } else if (field == "times") {
-      lists.times_s = fields.list("time", 1.0);
+      lists.times_s = fields.finite_list("time", 1.0);
       lists.has_times = true;
     } else if (field == "intensities") {
       lists.intensities = fields.list("intensity", 1.0);

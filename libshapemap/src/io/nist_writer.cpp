@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -30,10 +32,6 @@ struct Sensor {
   SubScan usual;  ///< the first scan, without readings
   std::size_t num_beams = 0;
   bool has_any_number = false;
-
-  bool made(const SubScan& scan) const {
-    return usual.sensor_label == scan.sensor_label && usual.robot_from_sensor == scan.robot_from_sensor;
-  }
 };
 
 /// What angles are divided by. Degrees are for people; they do not always read back as the same radians.
@@ -60,20 +58,17 @@ class Sensors {
   explicit Sensors(const Log& log) {
     for (const Position& position : log.positions) {
       for (const SubScan& scan : position.sub_scans) {
-        const auto known =
-            std::find_if(sensors_.begin(), sensors_.end(), [&](const Sensor& sensor) { return sensor.made(scan); });
-        if (known == sensors_.end()) {
+        const auto [known, is_new] = index_.emplace(key_of(scan), sensors_.size());
+        if (is_new) {
           declare(scan);
-        } else if (known->num_beams != scan.ranges_m.size()) {
-          known->has_any_number = true;
+        } else if (sensors_[known->second].num_beams != scan.ranges_m.size()) {
+          sensors_[known->second].has_any_number = true;
         }
       }
     }
   }
 
-  const Sensor& of(const SubScan& scan) const {
-    return *std::find_if(sensors_.begin(), sensors_.end(), [&](const Sensor& sensor) { return sensor.made(scan); });
-  }
+  const Sensor& of(const SubScan& scan) const { return sensors_[index_.at(key_of(scan))]; }
 
   bool have_any_number() const {
     return std::any_of(sensors_.begin(), sensors_.end(), [](const Sensor& sensor) { return sensor.has_any_number; });
@@ -96,6 +91,13 @@ class Sensors {
   }
 
  private:
+  /// What the scans of one sensor share: label and mount.
+  using Key = std::tuple<std::string, double, double, double, double, double, double>;
+  static Key key_of(const SubScan& scan) {
+    const MountPose& mount = scan.robot_from_sensor;
+    return {scan.sensor_label, mount.x_m, mount.y_m, mount.z_m, mount.yaw_rad, mount.pitch_rad, mount.roll_rad};
+  }
+
   static void append_mount(std::string& text, const MountPose& mount, double unit_rad) {
     if (mount == MountPose{}) return;
     text += " mount";
@@ -127,6 +129,7 @@ class Sensors {
   }
 
   std::vector<Sensor> sensors_;
+  std::map<Key, std::size_t> index_;
   std::set<std::string> names_;
 };
 
@@ -167,8 +170,8 @@ void append_scan(std::string& text, const SubScan& scan, const Sensor& sensor, d
   text += " ranges";
   for (const float range_m : scan.ranges_m) {
     text += ' ';
-    if (std::isfinite(range_m) && range_m >= 0.0F) {
-      append_number(text, range_m);
+    if (std::isfinite(range_m) || range_m < 0.0F) {
+      append_number(text, std::max(range_m, 0.0F));
     } else {
       text += '-';
     }

@@ -19,6 +19,7 @@ class RawlogReader {
   RawlogReader(ByteSource& source, const LogReadOptions& options)
       : source_(source), skeleton_(source), choice_(options.sensor_label) {
     log_.format = "rawlog";
+    log_.states_range_unit = true;  // MRPT has nothing but metres
   }
 
   Log read() {

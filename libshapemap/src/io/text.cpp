@@ -111,7 +111,8 @@ std::optional<float> parse_range(std::string_view word, double metres_per_unit) 
   const std::optional<double> value = parse_number(word);
   if (!value) return std::nullopt;
   const double range_m = *value * metres_per_unit;
-  const bool is_distance = std::isfinite(range_m) && range_m >= 0.0 && range_m <= std::numeric_limits<float>::max();
+  if (range_m < 0.0) return 0.0F;  // too near, or an error code: not that nothing was hit
+  const bool is_distance = std::isfinite(range_m) && range_m <= std::numeric_limits<float>::max();
   return is_distance ? static_cast<float>(range_m) : kNoReturn;
 }
 

@@ -59,8 +59,8 @@ class Words {
 std::optional<double> parse_number(std::string_view word);
 std::optional<long long> parse_count(std::string_view word);
 
-/// A reading as a text log gives it; what cannot be a distance (`-`, negative, nan, inf) becomes NaN. Nothing when
-/// the word is no reading at all.
+/// A reading as a text log gives it; `-`, nan and inf hit nothing and become NaN; what is negative says nothing and
+/// becomes 0. Nothing when the word is no reading at all.
 std::optional<float> parse_range(std::string_view word, double metres_per_unit);
 
 /// The shortest decimal text that reads back as the same value.

@@ -19,8 +19,11 @@ namespace {
 /// No laser goes round more slowly. Scans that are farther apart were picked, and logs without a clock count seconds.
 constexpr double kLongestPeriod_s = 0.6;
 
+/// And none faster, so that such stamps are in another unit.
+constexpr double kShortestPeriod_s = 0.002;
+
 /// Of a sweep that fills its period: sensors that are read less often than they go round, or that rest in between.
-constexpr std::array<double, 3> kShares{0.75, 0.5, 0.25};
+constexpr std::array<double, 4> kShares{0.75, 0.5, 1.0 / 3.0, 0.25};
 
 /// Points of a sweep that its motion is found by.
 constexpr std::size_t kPoints = 360;
@@ -43,13 +46,19 @@ std::string seconds_text(double seconds) {
 
 class Part {
  public:
-  Part(const Log& log, const LogPart& part, const ReturnOptions& returns, const DeskewOptions& options, int threads,
-       RunObserver& observer)
-      : log_(log), part_(part), returns_(returns), options_(options), threads_(threads), observer_(observer) {}
+  Part(const Log& log, const LogPart& part, const ReturnOptions& returns, const DeskewOptions& options, int every,
+       int threads, RunObserver& observer)
+      : log_(log),
+        part_(part),
+        returns_(returns),
+        options_(options),
+        every_(every),
+        threads_(threads),
+        observer_(observer) {}
 
   SweepVerdict straighten(std::vector<Position>& positions) {
     verdict_.period_s = usual_period_s(log_, part_.first, part_.last);
-    if (!(verdict_.period_s > 0.0) || verdict_.period_s > kLongestPeriod_s) return verdict_;
+    if (!(verdict_.period_s >= kShortestPeriod_s && verdict_.period_s <= kLongestPeriod_s)) return verdict_;
     const std::vector<SweepRun> runs = sweep_runs(log_, part_.first, part_.last, verdict_.period_s);
     const BeamTiming timing = timing_of(runs);
     if (timing.sweep_time_s == 0.0) return verdict_;
@@ -72,14 +81,15 @@ class Part {
     if (options_.sweep_time_s != 0.0) return {options_.sweep_time_s, false};
     std::vector<BeamTiming> candidates;
     const double told_s = told_sweep_time_s(log_, part_.first, part_.last);
-    const double told_share = std::abs(told_s) / verdict_.period_s;
+    const double turn_s = verdict_.period_s / every_;
+    const double told_share = std::abs(told_s) / turn_s;
     if (told_share >= kShortestTold && told_share <= kLongestTold) {
       candidates.push_back({told_s, true});
     } else if (told_s != 0.0) {
       observer_.on_warning("the log says that a sweep takes " + seconds_text(told_s) + ", but sweeps are " +
-                           seconds_text(verdict_.period_s) + " apart; that is not used");
+                           seconds_text(turn_s) + " apart; that is not used");
     }
-    const double round_s = sweep_time_of_rate_s(log_, part_.first, part_.last, verdict_.period_s);
+    const double round_s = sweep_time_of_rate_s(log_, part_.first, part_.last, turn_s);
     if (round_s > 0.0) {
       candidates.push_back({round_s, false});
       for (const double share : kShares) candidates.push_back({share * round_s, false});
@@ -145,6 +155,7 @@ class Part {
   LogPart part_;
   const ReturnOptions& returns_;
   const DeskewOptions& options_;
+  int every_;  ///< turns of the laser from one position to the next
   int threads_;
   RunObserver& observer_;
   SweepVerdict verdict_;
@@ -152,14 +163,14 @@ class Part {
 
 }  // namespace
 
-Log straightened(Log log, const ReturnOptions& returns, const DeskewOptions& options, int threads,
+Log straightened(Log log, const ReturnOptions& returns, const DeskewOptions& options, int every, int threads,
                  RunObserver& observer, std::vector<SweepVerdict>& verdicts) {
   verdicts.clear();
   if (options.mode != Deskew::kOff) observer.on_stage("sweeps");
   for (const LogPart& part : parts_of(log)) {
     verdicts.emplace_back();
     if (options.mode == Deskew::kOff) continue;
-    verdicts.back() = Part(log, part, returns, options, threads, observer).straighten(log.positions);
+    verdicts.back() = Part(log, part, returns, options, every, threads, observer).straighten(log.positions);
   }
   return log;
 }

@@ -7,13 +7,6 @@
 namespace shapemap {
 namespace {
 
-double mean_beam_step_rad(const SubScan& sub_scan) {
-  const std::size_t num_beams = sub_scan.ranges_m.size();
-  if (num_beams < 2) return 0.0;
-  const double fov_rad = sub_scan.beam_angle_rad(num_beams - 1) - sub_scan.beam_angle_rad(0);
-  return std::abs(fov_rad) / static_cast<double>(num_beams - 1);
-}
-
 /// Calls `visit(sub_scan, map_from_sub_scan)` for each sub-scan of the position.
 template <class Visit>
 void for_each_sub_scan(const Log& log, const PlacedPosition& place, const Visit& visit) {
@@ -34,7 +27,7 @@ std::vector<Rays> rays_of(const Log& log, const PlacedPosition& place, const Ret
     rays.hits_m.reserve(returns.size());
     for (const Return& hit : returns) rays.hits_m.push_back(map_from_sub_scan * hit.p_in_robot_m);
     rays.from_m = map_from_sub_scan * robot_from_sensor2(sub_scan).translation();
-    rays.beam_step_rad = mean_beam_step_rad(sub_scan);
+    rays.beam_step_rad = std::abs(sub_scan.angle_step_rad);
     all.push_back(std::move(rays));
   });
   return all;

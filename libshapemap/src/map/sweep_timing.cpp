@@ -13,6 +13,8 @@ namespace {
 
 /// A longer time between two sweeps is a gap: what happened meanwhile is not known.
 constexpr double kLongestGap = 2.5;
+/// And beams that are sent more periods away from the stamp are no part of a sweep.
+constexpr double kOddTime = 2.0;
 /// Fewer sweeps in a row do not tell how they were bent.
 constexpr std::size_t kLeastSweeps = 4;
 
@@ -21,6 +23,16 @@ double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// Whether the log says of a beam that it was sent long before or after its sweep: that is no time to go by.
+bool has_odd_times(const Position& position, double period_s) {
+  for (const SubScan& sub_scan : position.sub_scans) {
+    for (std::size_t beam = 0; beam < sub_scan.ranges_m.size(); ++beam) {
+      if (!(std::abs(sub_scan.beam_time_s(beam)) <= kOddTime * period_s)) return true;
+    }
+  }
+  return false;
 }
 
 /// What the beams of the widest sub-scan go through.
@@ -58,7 +70,7 @@ std::vector<SweepRun> sweep_runs(const Log& log, std::size_t first, std::size_t 
   std::vector<SweepRun> runs;
   std::size_t start = first;
   for (std::size_t i = first + 1; i <= last; ++i) {
-    if (i < last) {
+    if (i < last && !has_odd_times(log.positions[i], period_s) && !has_odd_times(log.positions[i - 1], period_s)) {
       const double step_s = log.positions[i].timestamp_s - log.positions[i - 1].timestamp_s;
       if (step_s > 0.0 && step_s <= kLongestGap * period_s) continue;
     }
@@ -119,8 +131,7 @@ double sweep_time_of_rate_s(const Log& log, std::size_t first, std::size_t last,
       if (!labels.insert(sub_scan.sensor_label).second) return 0.0;
       const std::size_t num = sub_scan.ranges_m.size();
       if (num < 2) continue;
-      const double step_rad =
-          std::abs(sub_scan.beam_angle_rad(num - 1) - sub_scan.beam_angle_rad(0)) / static_cast<double>(num - 1);
+      const double step_rad = std::abs(sub_scan.angle_step_rad);
       seen_rad.push_back(std::min(2.0 * kPi, step_rad * static_cast<double>(num)));
     }
   }

@@ -51,9 +51,4 @@ SweepTrajectory SweepTrajectory::refined() const {
   return fine;
 }
 
-Eigen::Vector3d SweepTrajectory::velocity_at(double time_s) const {
-  const double half_s = 0.05 * knot_s_;
-  return (at(time_s + half_s) - at(time_s - half_s)) / (2.0 * half_s);
-}
-
 }  // namespace shapemap

@@ -30,8 +30,6 @@ class SweepTrajectory {
   Pose2 pose_at(double time_s) const;
   /// The same motion with twice as many knots.
   SweepTrajectory refined() const;
-  /// Velocities along x and y, and of the heading.
-  Eigen::Vector3d velocity_at(double time_s) const;
 
   double knot_s() const { return knot_s_; }
   /// The time that a control point weighs most at.

@@ -29,13 +29,11 @@ Beam unbent_beam(const SubScan& sub_scan, std::size_t beam, const RangeLimits& l
   return {angle_rad + upward * turn_rad, static_cast<float>(straight_m.norm())};
 }
 
-/// Which beams look where the sweep has not been before, in the direction in which it goes round.
+/// Which beams lie within one turn from the first, by angle in the direction in which the sweep goes round.
 std::vector<std::size_t> once_round(const std::vector<Beam>& beams, double direction) {
   std::vector<std::size_t> kept;
-  double reached_rad = 0.0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const double gone_rad = direction * (beams[i].angle_rad - beams.front().angle_rad);
-    reached_rad = std::max(reached_rad, gone_rad);
     if (gone_rad < 2.0 * kPi) kept.push_back(i);
   }
   std::stable_sort(kept.begin(), kept.end(), [&](std::size_t a, std::size_t b) {
@@ -70,6 +68,7 @@ SubScan unbent(const SubScan& sub_scan, const ReturnOptions& options, const Beam
     if (!sub_scan.intensities.empty()) straight.intensities.push_back(sub_scan.intensities[i]);
   }
   set_beam_angles(straight, std::move(angles_rad));
+  straight.angle_step_rad = sub_scan.angle_step_rad;  // several echoes of a beam are not at the same angle any more
   straight.beam_times_s.clear();
   straight.beam_time_step_s = 0.0;
   straight.start_s = 0.0;

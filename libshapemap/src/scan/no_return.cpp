@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::size_t kMostLevels = 32;        // of one sensor; each costs a round of the test
 constexpr std::size_t kFewSweeps = 64;         // sensors with fewer are looked at together
+constexpr std::size_t kTooFewSweeps = 12;      // so few independent views cannot be sure of anything by themselves
 constexpr double kFarBeyondHeader = 1.1;       // what is just beyond a maximum may be noise, or the maximum itself
 constexpr double kFewestBeyondHeader = 0.005;  // of all readings
 constexpr double kApartOfLevel = 0.02;         // what is nearer to a level, in its distance, may be odd readings of it
@@ -82,7 +83,7 @@ void learn_levels(std::vector<Sensor>& sensors) {
   std::vector<Sensor*> few;
   Scans together;
   for (Sensor& sensor : sensors) {
-    sensor.levels = learned_levels(sensor.scans);
+    if (sensors.size() == 1 || sensor.scans.size() >= kTooFewSweeps) sensor.levels = learned_levels(sensor.scans);
     if (!sensor.levels.empty() || sensor.scans.size() >= kFewSweeps) continue;
     few.push_back(&sensor);
     together.insert(together.end(), sensor.scans.begin(), sensor.scans.end());

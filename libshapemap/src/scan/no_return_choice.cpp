@@ -12,7 +12,7 @@ namespace {
 
 ConfigError misread(const std::string& word) {
   return ConfigError("--no-return-m has '" + word +
-                     "', expected auto, none, or levels in metres up to 1000 such as 51.15 or 51.0-51.2, with commas "
+                     "', expected auto, none, or levels in metres, above 0 and up to 1000, such as 51.15 or 51.0-51.2, with commas "
                      "between");
 }
 

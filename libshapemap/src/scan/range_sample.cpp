@@ -30,8 +30,7 @@ Millimetres to_mm(float range_m, const SubScan& scan) {
 double beam_step_rad(const SubScan& scan) {
   const std::size_t num_beams = scan.ranges_m.size();
   if (num_beams < 2) return 2 * kPi;
-  const double span_rad = std::abs(scan.beam_angle_rad(num_beams - 1) - scan.beam_angle_rad(0));
-  const double step_rad = span_rad / static_cast<double>(num_beams - 1);
+  const double step_rad = std::abs(scan.angle_step_rad);
   const double widest_rad = 2 * kPi / static_cast<double>(num_beams - 1);
   return step_rad > 0.0 && step_rad <= widest_rad ? step_rad : widest_rad;
 }

@@ -14,6 +14,8 @@ constexpr double kFarthestMiddle_m = 100.0;
 /// What is usual, as the middle of a log-normal distribution and its width: rooms, and the noise of lasers.
 constexpr double kUsualRange_m = 5.0;
 constexpr double kRangeFactor = 3.0;
+constexpr double kUsualNearest_m = 0.6;
+constexpr double kNearestFactor = 4.0;
 /// The roughness is that of the smoothest tenth, about 0.3 times the noise of a reading.
 constexpr double kUsualRoughness_m = 0.0025;
 constexpr double kRoughnessFactor = 2.5;
@@ -35,7 +37,8 @@ double quantile(std::vector<double>& values, double share) {
 bool is_reading(float range) { return std::isfinite(range) && range > 0.0F; }
 
 struct Readings {
-  double middle = 0.0;  ///< of the distances that occur
+  double middle = 0.0;   ///< of the distances that occur
+  double nearest = 0.0;  ///< but for one of a hundred readings
   /// How much the smoothest surfaces deviate from straight, beam by beam; at least half a step of the readings.
   double roughness = 0.0;
 };
@@ -58,10 +61,12 @@ Readings readings_of(const Log& log) {
   double step = std::numeric_limits<double>::infinity();
   // Each distance counts once, so that a code for "no return" does not, however often it stands there.
   std::sort(ranges.begin(), ranges.end());
+  const double nearest = quantile(ranges, 0.01);
+  std::sort(ranges.begin(), ranges.end());
   ranges.erase(std::unique(ranges.begin(), ranges.end()), ranges.end());
   for (std::size_t i = 1; i < ranges.size(); ++i) step = std::min(step, ranges[i] - ranges[i - 1]);
   const double hidden = ranges.size() > 1 ? 0.5 * step : 0.0;
-  return {quantile(ranges, 0.5), std::max(quantile(bends, 0.1), hidden)};
+  return {quantile(ranges, 0.5), nearest, std::max(quantile(bends, 0.1), hidden)};
 }
 
 double unusual(double value, double usual, double factor) {
@@ -73,6 +78,7 @@ double unusual(double value, double usual, double factor) {
 double log_density(const Readings& readings, RangeUnit unit) {
   const double scale = metres_per(unit);
   return -unusual(readings.middle * scale, kUsualRange_m, kRangeFactor) -
+         unusual(readings.nearest * scale, kUsualNearest_m, kNearestFactor) -
          unusual(readings.roughness * scale, kUsualRoughness_m, kRoughnessFactor);
 }
 

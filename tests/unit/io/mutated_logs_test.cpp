@@ -12,6 +12,7 @@
 
 #include "io/alignment_record.hpp"
 #include "shapemap/io/alignment_store_file.hpp"
+#include "shapemap/scan/beam_angles.hpp"
 #include "support/hostile_log.hpp"
 #include "support/synthetic_world.hpp"
 #include "support/temp_folder.hpp"
@@ -67,6 +68,25 @@ std::string flaser_lines() {
   return text;
 }
 
+/// What only the second version of the text format says: ten sweeps a second, whose beams have times; one of them has
+/// angles and intensities of its own.
+Log rolling_walk() {
+  constexpr double kPeriod_s = 0.1;
+  Log log = walk(5, 0.05);
+  for (std::size_t i = 0; i < log.positions.size(); ++i) {
+    log.positions[i].timestamp_s = 100.0 + kPeriod_s * static_cast<double>(i);
+    SubScan& scan = log.positions[i].sub_scans.front();
+    scan.beam_time_step_s = kPeriod_s / 120;
+    scan.start_s = 0.01;
+    if (i != 2) continue;
+    std::vector<double> angles_rad;
+    for (std::size_t k = 0; k < scan.ranges_m.size(); ++k) angles_rad.push_back(scan.beam_angle_rad(k));
+    set_beam_angles(scan, angles_rad);
+    scan.intensities.assign(scan.ranges_m.size(), 7.0F);
+  }
+  return log;
+}
+
 struct Sample {
   std::string name;
   std::string content;
@@ -82,6 +102,8 @@ std::vector<Sample> samples(const TempFolder& folder) {
     write_log(log, folder.path(name), format);
     all.push_back({name, test::read_file(folder.path(name))});
   }
+  write_log(rolling_walk(), folder.path("rolling"), LogFormat::kNist);
+  all.push_back({"rolling", test::read_file(folder.path("rolling"))});
   write_log(log, folder.path("rawlog"), LogFormat::kRawlog);
   all.push_back({"rawlog", test::read_gz(folder.path("rawlog")), false});
   return all;

@@ -10,7 +10,9 @@
 
 #include "map/sweep_trial.hpp"
 #include "shapemap/core/errors.hpp"
+#include "shapemap/scan/beam_angles.hpp"
 #include "shapemap/scan/joined_logs.hpp"
+#include "shapemap/scan/plausibility.hpp"
 #include "support/bent_sweeps.hpp"
 
 namespace shapemap {
@@ -37,7 +39,7 @@ struct Listener : RunObserver {
 Straightened straightened_log(const Log& log, const DeskewOptions& options = {}, int threads = 1) {
   Listener listener;
   Straightened result;
-  result.log = straightened(log, {}, options, threads, listener, result.verdicts);
+  result.log = straightened(log, {}, options, 1, threads, listener, result.verdicts);
   result.warnings = listener.warnings;
   return result;
 }
@@ -243,7 +245,7 @@ TEST(Deskew, EndsWhenAskedTo) {
   Listener listener;
   listener.stops = true;
   std::vector<SweepVerdict> verdicts;
-  EXPECT_THROW(straightened(log, {}, {}, 1, listener, verdicts), Interrupted);
+  EXPECT_THROW(straightened(log, {}, {}, 1, 1, listener, verdicts), Interrupted);
 }
 
 TEST(Deskew, AnEmptyLogAndScansWithoutReturnsAreNoTrouble) {
@@ -254,6 +256,74 @@ TEST(Deskew, AnEmptyLogAndScansWithoutReturnsAreNoTrouble) {
   EXPECT_TRUE(is_same(straightened_log(log, on).log, log));
   for (Position& position : log.positions) position.sub_scans.clear();
   EXPECT_EQ(straightened_log(log, on).log.positions.size(), 12U);
+}
+
+/// Any scans go together if each is bent to a line: by a motion against its beams.
+TEST(Deskew, ScansOfPlacesFarApartAreNoSweeps) {
+  const test::World world = test::cluttered_room(5);
+  std::mt19937 rng(3);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  Log log;
+  for (int i = 0; i < 80; ++i) {
+    test::Scanner scanner;
+    scanner.num_beams = 180;
+    scanner.view_rad = kPi;
+    log.positions.push_back(test::scan_of(world, {1.5 * unit(rng), 1.5 * unit(rng), 0.7 * i}, scanner, rng));
+    log.positions.back().timestamp_s = 0.5 * i;
+  }
+  const Straightened result = straightened_log(log);
+  EXPECT_FALSE(result.verdicts[0].straightened);
+  EXPECT_TRUE(is_same(result.log, log));
+}
+
+TEST(Deskew, AThinnedRecordingIsJudgedByTheTurnsOfItsLaser) {
+  const test::World world = test::cluttered_room(5);
+  Log thinned = test::bent_log(world, test::swinging(20 * kDegree, 0.1), 4 * kSweeps, noisy());
+  std::vector<Position> kept;
+  for (std::size_t i = 0; i < thinned.positions.size(); i += 2) kept.push_back(thinned.positions[i]);
+  thinned.positions = kept;
+  Listener listener;
+  std::vector<SweepVerdict> verdicts;
+  const Log straight = straightened(thinned, {}, {}, 2, 1, listener, verdicts);
+  ASSERT_TRUE(verdicts[0].straightened);
+  EXPECT_NEAR(verdicts[0].sweep_time_s, 0.1, 1e-9);
+  EXPECT_LT(test::off_the_walls_m(straight, world), 0.5 * test::off_the_walls_m(thinned, world));
+}
+
+/// One time in another unit must cost neither memory nor the rest of the log.
+TEST(Deskew, ABeamThatWasSentFarFromItsSweepEndsARun) {
+  Log log = test::bent_log(test::cluttered_room(5), test::swinging(30 * kDegree, 0.2), kSweeps, noisy());
+  for (Position& position : log.positions) position.sub_scans[0].beam_time_step_s = 0.1 / 120;
+  log.positions[20].sub_scans[0].start_s = 1e6;
+  const Straightened result = straightened_log(log);
+  EXPECT_TRUE(result.verdicts[0].straightened);
+  EXPECT_GT(result.verdicts[0].num_sweeps, kSweeps / 2);
+  EXPECT_EQ(result.log.positions[20].sub_scans[0].ranges_m, log.positions[20].sub_scans[0].ranges_m);
+}
+
+/// Several echoes of one beam have one angle before, and nearly the same angle after.
+TEST(Deskew, EchoesOfOneBeamStayPlausible) {
+  Log log = test::bent_log(test::cluttered_room(5), test::swinging(30 * kDegree, 0.2), 20, noisy());
+  DeskewOptions on;
+  on.mode = Deskew::kOn;
+  for (Position& position : log.positions) {
+    SubScan& scan = position.sub_scans[0];
+    SubScan echoes = scan;
+    echoes.ranges_m.clear();
+    std::vector<double> angles_rad;
+    for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) {
+      for (const float farther_m : {0.0F, 0.4F}) {
+        echoes.ranges_m.push_back(scan.ranges_m[i] + farther_m);
+        angles_rad.push_back(scan.beam_angle_rad(i));
+        echoes.beam_times_s.push_back(static_cast<float>(static_cast<double>(i) * 0.1 / 120));
+      }
+    }
+    set_beam_angles(echoes, angles_rad);
+    scan = echoes;
+  }
+  const Straightened result = straightened_log(log, on);
+  EXPECT_TRUE(result.verdicts[0].straightened);
+  for (const Position& position : result.log.positions) EXPECT_EQ(implausibility(position), "");
 }
 
 TEST(ChanceOfGains, IsThatOfTheTablesOfTheSignedRankTest) {

