@@ -12,8 +12,8 @@ namespace {
 
 ConfigError misread(const std::string& word) {
   return ConfigError("--no-return-m has '" + word +
-                     "', expected auto, none, or levels in metres, above 0 and up to 1000, such as 51.15 or 51.0-51.2, with commas "
-                     "between");
+                     "', expected auto, none, or levels in metres, above 0 and up to 1000, such as 51.15 or "
+                     "51.0-51.2, with commas between");
 }
 
 double level_m(const std::string& number, const std::string& word) {

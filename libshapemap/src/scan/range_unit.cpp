@@ -38,7 +38,7 @@ bool is_reading(float range) { return std::isfinite(range) && range > 0.0F; }
 
 struct Readings {
   double middle = 0.0;   ///< of the distances that occur
-  double nearest = 0.0;  ///< but for one of a hundred readings
+  double nearest = 0.0;  ///< of them, but for one of a hundred
   /// How much the smoothest surfaces deviate from straight, beam by beam; at least half a step of the readings.
   double roughness = 0.0;
 };
@@ -61,12 +61,10 @@ Readings readings_of(const Log& log) {
   double step = std::numeric_limits<double>::infinity();
   // Each distance counts once, so that a code for "no return" does not, however often it stands there.
   std::sort(ranges.begin(), ranges.end());
-  const double nearest = quantile(ranges, 0.01);
-  std::sort(ranges.begin(), ranges.end());
   ranges.erase(std::unique(ranges.begin(), ranges.end()), ranges.end());
   for (std::size_t i = 1; i < ranges.size(); ++i) step = std::min(step, ranges[i] - ranges[i - 1]);
   const double hidden = ranges.size() > 1 ? 0.5 * step : 0.0;
-  return {quantile(ranges, 0.5), nearest, std::max(quantile(bends, 0.1), hidden)};
+  return {quantile(ranges, 0.5), quantile(ranges, 0.01), std::max(quantile(bends, 0.1), hidden)};
 }
 
 double unusual(double value, double usual, double factor) {
