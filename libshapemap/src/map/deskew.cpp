@@ -59,8 +59,14 @@ class Part {
   SweepVerdict straighten(std::vector<Position>& positions) {
     verdict_.period_s = usual_period_s(log_, part_.first, part_.last);
     if (!(verdict_.period_s >= kShortestPeriod_s && verdict_.period_s <= kLongestPeriod_s)) return verdict_;
-    const std::vector<SweepRun> runs = sweep_runs(log_, part_.first, part_.last, verdict_.period_s);
-    const BeamTiming timing = timing_of(runs);
+    const double told_s = told_sweep_time_s(log_, part_.first, part_.last);
+    const std::vector<SweepRun> runs =
+        sweep_runs(log_, part_.first, part_.last, verdict_.period_s, is_possible(told_s));
+    if (told_s != 0.0 && !is_possible(told_s)) {
+      observer_.on_warning("the log says that a sweep takes " + seconds_text(told_s) + ", but sweeps are " +
+                           seconds_text(turn_s()) + " apart; that is not used");
+    }
+    const BeamTiming timing = timing_of(runs, told_s);
     if (timing.sweep_time_s == 0.0) return verdict_;
     verdict_.straightened = true;
     verdict_.sweep_time_s = timing.sweep_time_s;
@@ -77,19 +83,19 @@ class Part {
   }
 
  private:
-  BeamTiming timing_of(const std::vector<SweepRun>& runs) {
+  /// What the laser takes to go round.
+  double turn_s() const { return verdict_.period_s / every_; }
+
+  bool is_possible(double told_s) const {
+    const double share = std::abs(told_s) / turn_s();
+    return share >= kShortestTold && share <= kLongestTold;
+  }
+
+  BeamTiming timing_of(const std::vector<SweepRun>& runs, double told_s) {
     if (options_.sweep_time_s != 0.0) return {options_.sweep_time_s, false};
     std::vector<BeamTiming> candidates;
-    const double told_s = told_sweep_time_s(log_, part_.first, part_.last);
-    const double turn_s = verdict_.period_s / every_;
-    const double told_share = std::abs(told_s) / turn_s;
-    if (told_share >= kShortestTold && told_share <= kLongestTold) {
-      candidates.push_back({told_s, true});
-    } else if (told_s != 0.0) {
-      observer_.on_warning("the log says that a sweep takes " + seconds_text(told_s) + ", but sweeps are " +
-                           seconds_text(turn_s) + " apart; that is not used");
-    }
-    const double round_s = sweep_time_of_rate_s(log_, part_.first, part_.last, turn_s);
+    if (is_possible(told_s)) candidates.push_back({told_s, true});
+    const double round_s = sweep_time_of_rate_s(log_, part_.first, part_.last, turn_s());
     if (round_s > 0.0) {
       candidates.push_back({round_s, false});
       for (const double share : kShares) candidates.push_back({share * round_s, false});

@@ -66,11 +66,13 @@ double usual_period_s(const Log& log, std::size_t first, std::size_t last) {
   return median_of(std::move(steps_s));
 }
 
-std::vector<SweepRun> sweep_runs(const Log& log, std::size_t first, std::size_t last, double period_s) {
+std::vector<SweepRun> sweep_runs(const Log& log, std::size_t first, std::size_t last, double period_s,
+                                 bool goes_by_beam_times) {
+  const auto is_odd = [&](std::size_t i) { return goes_by_beam_times && has_odd_times(log.positions[i], period_s); };
   std::vector<SweepRun> runs;
   std::size_t start = first;
   for (std::size_t i = first + 1; i <= last; ++i) {
-    if (i < last && !has_odd_times(log.positions[i], period_s) && !has_odd_times(log.positions[i - 1], period_s)) {
+    if (i < last && !is_odd(i) && !is_odd(i - 1)) {
       const double step_s = log.positions[i].timestamp_s - log.positions[i - 1].timestamp_s;
       if (step_s > 0.0 && step_s <= kLongestGap * period_s) continue;
     }

@@ -19,8 +19,10 @@ struct SweepRun {
 /// From one position to the next, as a rule; 0 where stamps do not tell.
 double usual_period_s(const Log& log, std::size_t first, std::size_t last);
 
-/// The runs of [first, last) that are long enough to tell a motion.
-std::vector<SweepRun> sweep_runs(const Log& log, std::size_t first, std::size_t last, double period_s);
+/// The runs of [first, last) that are long enough to tell a motion. Where the times of beams are gone by, sweeps with
+/// beams far from their stamps are in none.
+std::vector<SweepRun> sweep_runs(const Log& log, std::size_t first, std::size_t last, double period_s,
+                                 bool goes_by_beam_times);
 
 /// When the beams of a sweep were sent.
 struct BeamTiming {
