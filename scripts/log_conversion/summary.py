@@ -62,7 +62,7 @@ def oddities(laser: Laser, uses_received_times: bool) -> list[str]:
         ),
         (sum(not np.isfinite(s.min_range_m) or s.min_range_m < 0.0 for s in scans), "no minimum range"),
         (sum(len(s.intensities) not in (0, len(s.ranges_m)) for s in scans), "too many or too few intensities"),
-        (sum(bool(np.isneginf(s.ranges_m).any()) for s in scans), "readings of minus infinity, which are left out"),
+        (sum(bool(np.isneginf(s.ranges_m).any()) for s in scans), "readings of minus infinity, which say nothing"),
     ]
     odd = [f"{number} of {len(scans)} have {what}" for number, what in found if number]
     odd += _varying(scans)

@@ -124,9 +124,9 @@ def test_time_between_beams_and_intensities(tmp_path: Path, capsys: pytest.Captu
     assert "1 of 2 have too many or too few intensities" in capsys.readouterr().err
 
 
-def test_readings_of_minus_infinity_are_no_readings(tmp_path: Path) -> None:
+def test_readings_of_minus_infinity_say_nothing(tmp_path: Path) -> None:
     log = converted(write_bag(tmp_path / "walk.bag", [scan(1.0, [-INF, 1.0, -4.0])]))
-    assert log.scans[0].words["ranges"] == "nan 1.0 -4.0"
+    assert log.scans[0].words["ranges"] == "0.0 1.0 -4.0"
 
 
 def test_readings_keep_all_their_digits(tmp_path: Path) -> None:
