@@ -113,6 +113,12 @@ TEST_F(Carmen, ReadingsThatAreNoDistancesAreNoReturns) {
   for (const std::size_t beam : {2U, 3U, 5U}) EXPECT_EQ(scan.ranges_m[beam], 0.0F) << "says nothing: " << beam;
 }
 
+TEST_F(Carmen, ALineWithoutReadingsIsAnEmptyScan) {
+  const Log log = read(flaser(180) + "FLASER 0 0 0 0 0 0 0 9 h 9\n");
+  ASSERT_EQ(log.positions.size(), 2U);
+  EXPECT_TRUE(log.positions[1].sub_scans.at(0).ranges_m.empty());
+}
+
 TEST_F(Carmen, SickErrorCodesAreNoReturns) {
   const SubScan scan =
       read("FLASER 180 81.91 80.5" + times(178, "1.5") + " 0 0 0 0 0 0 1 h 1\n").positions.at(0).sub_scans.at(0);
