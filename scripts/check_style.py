@@ -12,8 +12,11 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatch
 from pathlib import Path
 
-# A stage includes only itself and those before it.
-STAGES = ("core", "scan", "shape", "match", "align", "graph", "map", "io")
+# A room includes only itself and those before it.
+ROOMS = (
+    *("core", "scan", "shape", "deskew", "motion", "grid", "paper", "matching", "graph", "loops", "inference"),
+    *("localization", "mapper", "io"),
+)
 FOLDERS = (".ci", "apps", "cmake", "libshapemap", "python", "scripts", "tests")
 SUFFIXES = (".cmake", ".cpp", ".hpp", ".in", ".py", ".sh")
 CPP_SUFFIXES = (".cpp", ".hpp", ".hpp.in")
@@ -40,7 +43,7 @@ CONFINEMENTS = (
     Confinement(
         "MRPT",
         "mrpt/*",
-        ("libshapemap/src/io/rawlog*.cpp", "libshapemap/src/io/grid_map.cpp", "apps/shapemap-baselines/mrpt_*.cpp"),
+        ("libshapemap/src/io/rawlog*.cpp", "libshapemap/src/grid/occupancy_grid.cpp", "apps/shapemap-baselines/mrpt_*.cpp"),
     ),
     Confinement("OpenCV", "opencv2/*", ("libshapemap/src/io/map_image.cpp",)),
     Confinement("CGAL", "CGAL/*", ("libshapemap/src/shape/simplify.cpp",)),
@@ -66,8 +69,8 @@ class SourceFile:
         return self.path.endswith(CPP_SUFFIXES)
 
     @property
-    def stage(self) -> str | None:
-        """The stage folder of libshapemap that the file lies in."""
+    def room(self) -> str | None:
+        """The room folder of libshapemap that the file lies in."""
         found = re.match(r"libshapemap/(?:include/shapemap|src)/(\w+)/", self.path)
         return found.group(1) if found else None
 
@@ -105,18 +108,18 @@ def check_text(source: SourceFile) -> Iterator[str]:
             yield f"{source.path}:{number}: {len(line)} columns, at most {MAX_COLUMNS}"
 
 
-def included_stage(path: str, including: str) -> str:
-    """The stage of a quoted include: "shapemap/map/x.hpp", "map/x.hpp" or, in the same folder, "x.hpp"."""
+def included_room(path: str, including: str) -> str:
+    """The room of a quoted include: "shapemap/map/x.hpp", "map/x.hpp" or, in the same folder, "x.hpp"."""
     parts = path.removeprefix("shapemap/").split("/")
     return parts[0] if len(parts) > 1 else including
 
 
 def check_layers(source: SourceFile) -> Iterator[str]:
-    stage = source.stage
-    if stage is None:
+    room = source.room
+    if room is None:
         return
-    if stage not in STAGES:
-        yield f"{source.path}:1: folder '{stage}' is none of: {', '.join(STAGES)}"
+    if room not in ROOMS:
+        yield f"{source.path}:1: folder '{room}' is none of: {', '.join(ROOMS)}"
         return
     for number, path, quoted in source.includes():
         where = f"{source.path}:{number}"
@@ -124,11 +127,11 @@ def check_layers(source: SourceFile) -> Iterator[str]:
             if path.startswith("shapemap/"):
                 yield f"{where}: include our own '{path}' in quotes"
             continue
-        other = included_stage(path, stage)
-        if other not in STAGES:
-            yield f"{where}: '{path}' is in no stage of the library"
-        elif STAGES.index(other) > STAGES.index(stage):
-            yield f"{where}: '{stage}' must not include '{path}', which comes after it"
+        other = included_room(path, room)
+        if other not in ROOMS:
+            yield f"{where}: '{path}' is in no room of the library"
+        elif ROOMS.index(other) > ROOMS.index(room):
+            yield f"{where}: '{room}' must not include '{path}', which comes after it"
 
 
 def check_silence(source: SourceFile) -> Iterator[str]:

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "output_set.hpp"
-#include "shapemap/io/grid_map.hpp"
+#include "shapemap/grid/occupancy_grid.hpp"
 
 /// The picture of a map and the map.yaml beside it.
 namespace shapemap::cli {

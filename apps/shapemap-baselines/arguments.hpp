@@ -8,7 +8,7 @@
 #include "motions.hpp"
 #include "mrpt_icp.hpp"
 #include "mrpt_rbpf.hpp"
-#include "shapemap/io/grid_map.hpp"
+#include "shapemap/grid/occupancy_grid.hpp"
 #include "shapemap/io/log_file.hpp"
 #include "shapemap/io/log_selection.hpp"
 #include "vasco.hpp"

@@ -17,8 +17,8 @@
 
 #include "io/rawlog.hpp"
 #include "motions.hpp"
-#include "shapemap/align/confidence.hpp"
 #include "shapemap/core/errors.hpp"
+#include "shapemap/matching/match_probability.hpp"
 
 namespace shapemap::baselines {
 namespace {

@@ -38,7 +38,7 @@ Log with_straight_sweeps(Log log, const AlignArguments& arguments) {
   ConsoleObserver observer(!arguments.quiet);
   std::vector<SweepVerdict> verdicts;
   log = straightened(std::move(log), options.returns, options.deskew, arguments.settings.selection.every,
-                     options.chain.threads, observer, verdicts);
+                     options.run.threads, observer, verdicts);
   observer.finish();
   log.warnings.insert(log.warnings.end(), observer.warnings().begin(), observer.warnings().end());
   return log;

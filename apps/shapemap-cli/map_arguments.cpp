@@ -56,11 +56,11 @@ void add_outputs(CLI::App& app, MapArguments& arguments) {
 void check_out(const MapArguments& arguments) {
   if (arguments.map_path.empty()) throw ConfigError("no map asked for; give --out map.png, .pgm or .tif");
   check_map_path("--out", arguments.map_path);
-  if (!arguments.motions_path.empty() && arguments.settings.mapping.chain.method != Method::kRobust) {
+  if (!arguments.motions_path.empty() && arguments.settings.mapping.run.method != Method::kRobust) {
     throw ConfigError("--motions needs --method robust: the paper's method has no covariances");
   }
   if (arguments.logs.size() < 2) return;
-  if (arguments.settings.mapping.chain.method != Method::kRobust) {
+  if (arguments.settings.mapping.run.method != Method::kRobust) {
     throw ConfigError("several logs need --method robust: the paper's method never joins what it has not chained");
   }
   for (const auto& [option, path] : per_log_outputs(arguments)) {

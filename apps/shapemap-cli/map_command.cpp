@@ -11,7 +11,7 @@
 #include "saved_state.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/io/trace_file.hpp"
-#include "shapemap/map/map_log.hpp"
+#include "shapemap/mapper/map_log.hpp"
 
 namespace shapemap::cli {
 namespace {
@@ -57,7 +57,7 @@ std::vector<SweepVerdict> straighten(const MapArguments& arguments, LogSet& logs
   ConsoleObserver observer(arguments.verbosity != Verbosity::kQuiet);
   std::vector<SweepVerdict> verdicts;
   logs.log = straightened(std::move(logs.log), options.returns, options.deskew, arguments.settings.selection.every,
-                          options.chain.threads, observer, verdicts);
+                          options.run.threads, observer, verdicts);
   observer.finish();
   warnings.insert(warnings.end(), observer.warnings().begin(), observer.warnings().end());
   return verdicts;

@@ -6,8 +6,8 @@
 
 #include "arguments.hpp"
 #include "log_set.hpp"
+#include "shapemap/deskew/deskew.hpp"
 #include "shapemap/io/report.hpp"
-#include "shapemap/map/deskew.hpp"
 
 /// What a run says about itself on the console.
 namespace shapemap::cli {

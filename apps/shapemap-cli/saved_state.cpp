@@ -19,7 +19,7 @@ void check_state(const MapArguments& arguments) {
     if (arguments.resume) throw ConfigError("--resume needs --save-state FILE, the file to go on from");
     return;
   }
-  if (arguments.settings.mapping.chain.method != Method::kRobust) {
+  if (arguments.settings.mapping.run.method != Method::kRobust) {
     throw ConfigError("--save-state needs --method robust: the paper's method keeps nothing");
   }
   std::error_code ignored;

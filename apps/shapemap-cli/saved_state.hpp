@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "arguments.hpp"
-#include "shapemap/io/alignment_store_file.hpp"
+#include "shapemap/io/match_cache_file.hpp"
 
 /// --save-state and --resume: what was aligned survives the end of the run.
 namespace shapemap::cli {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "shapemap/io/grid_map.hpp"
+#include "shapemap/grid/occupancy_grid.hpp"
+#include "shapemap/grid/wall_direction.hpp"
 #include "shapemap/io/log_file.hpp"
 #include "shapemap/io/log_selection.hpp"
-#include "shapemap/map/mapping_options.hpp"
-#include "shapemap/map/wall_direction.hpp"
+#include "shapemap/mapper/mapper_options.hpp"
 
 namespace shapemap::cli {
 

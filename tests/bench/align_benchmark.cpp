@@ -4,10 +4,10 @@
 // that size 1 ms, alignment of 1604 points to three scans over five rotations 60 ms, with ICP 100 ms.
 #include <benchmark/benchmark.h>
 
-#include "shapemap/align/align.hpp"
 #include "shapemap/io/log_file.hpp"
-#include "shapemap/map/mapping_options.hpp"
-#include "shapemap/match/lcs.hpp"
+#include "shapemap/mapper/mapper_options.hpp"
+#include "shapemap/paper/lcs.hpp"
+#include "shapemap/paper/paper_align.hpp"
 
 namespace shapemap {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "shapemap/graph/map_evidence.hpp"
-#include "shapemap/graph/place_signature.hpp"
+#include "shapemap/inference/map_score.hpp"
+#include "shapemap/loops/place_descriptor.hpp"
 #include "support/ring_walk.hpp"
 
 namespace shapemap {

@@ -3,10 +3,10 @@
 // positions of the demo log (four sub-scans, 1604 beams).
 #include <benchmark/benchmark.h>
 
-#include "shapemap/align/robust_align.hpp"
 #include "shapemap/io/log_file.hpp"
-#include "shapemap/match/rotation_hypotheses.hpp"
-#include "shapemap/match/shape_hypotheses.hpp"
+#include "shapemap/matching/lcs_hypotheses.hpp"
+#include "shapemap/matching/rotation_hypotheses.hpp"
+#include "shapemap/matching/scan_matcher.hpp"
 #include "support/views.hpp"
 
 namespace shapemap {

@@ -8,9 +8,9 @@
 
 #include "shapemap/core/errors.hpp"
 #include "shapemap/core/observer.hpp"
+#include "shapemap/deskew/deskew.hpp"
 #include "shapemap/io/log_file.hpp"
-#include "shapemap/map/deskew.hpp"
-#include "shapemap/map/map_log.hpp"
+#include "shapemap/mapper/map_log.hpp"
 
 /// What is done with logs that may hold anything.
 namespace shapemap::test {
@@ -29,7 +29,7 @@ inline Outcome read_and_map(const std::string& path) {
     summarise(log);
     log.positions.resize(std::min(log.positions.size(), kStraightened));
     MappingOptions options;
-    options.chain.threads = 1;
+    options.run.threads = 1;
     RunObserver observer;
     std::vector<SweepVerdict> verdicts;
     log = straightened(std::move(log), options.returns, options.deskew, 1, 1, observer, verdicts);

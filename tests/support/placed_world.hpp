@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "shapemap/map/trajectory.hpp"
+#include "shapemap/mapper/map_result.hpp"
 #include "support/synthetic_world.hpp"
 
 /// A log with the poses that it was simulated with.

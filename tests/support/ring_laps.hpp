@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "map/keyframe_map.hpp"
-#include "shapemap/map/mapping_options.hpp"
+#include "inference/optimized_map.hpp"
+#include "shapemap/mapper/mapper_options.hpp"
 #include "shapemap/scan/scan.hpp"
 #include "support/ring_walk.hpp"
 
@@ -17,13 +17,13 @@ namespace shapemap::test {
 
 inline MappingOptions quick_mapping() {
   MappingOptions options;
-  options.robust.search.hypotheses.rotation_peaks = 4;
-  options.robust.search.hypotheses.refined = 6;
-  options.robust.search.hypotheses.kept = 3;
-  options.robust.search.voting.peaks = 6;
-  options.loop_search.likely_places = 3;
-  options.keyframes.settle_at = 0;
-  options.chain.threads = 1;
+  options.robust.matcher.search.hypotheses.rotation_peaks = 4;
+  options.robust.matcher.search.hypotheses.refined = 6;
+  options.robust.matcher.search.hypotheses.kept = 3;
+  options.robust.matcher.search.voting.peaks = 6;
+  options.robust.loop_detection.likely_places = 3;
+  options.robust.keyframes.settle_at = 0;
+  options.run.threads = 1;
   return options;
 }
 
@@ -47,14 +47,14 @@ struct KnownChain {
   KnownChain(const Laps& laps, const std::vector<Pose2>& poses) {
     const MappingOptions options = quick_mapping();
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      auto view = std::make_shared<ScanView>(
-          view_of(laps.log.positions[i], options.returns, options.polylines, options.shape, options.robust.view));
-      chain.keyframes.push_back({i, std::move(view), {}});
+      auto view = std::make_shared<ScanView>(view_of(laps.log.positions[i], options.returns, options.polylines,
+                                                     options.shape, options.robust.matcher.view));
+      chain.keyframes.push_back({i, 0, std::move(view), {}, {}});
       if (i == 0) continue;
       const Pose2 step = inverse(poses[i - 1]) * poses[i];
       KeyframeLink link;
       link.hypotheses = {
-          hypothesis_at(*chain.keyframes[i - 1].view, *chain.keyframes[i].view, step, options.robust.search)};
+          hypothesis_at(*chain.keyframes[i - 1].view, *chain.keyframes[i].view, step, options.robust.matcher.search)};
       chain.links.push_back(std::move(link));
       map.constraints.push_back(link_constraint(chain, i - 1, 0));
     }

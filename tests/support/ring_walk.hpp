@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "shapemap/graph/loop_closing.hpp"
+#include "shapemap/inference/map_search.hpp"
 #include "support/random_graph.hpp"
 #include "support/views.hpp"
 

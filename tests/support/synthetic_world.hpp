@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "shapemap/core/pose2.hpp"
-#include "shapemap/map/mapping_options.hpp"
+#include "shapemap/mapper/mapper_options.hpp"
 #include "shapemap/scan/scan.hpp"
 #include "shapemap/shape/shape.hpp"
 
@@ -126,7 +126,7 @@ inline Position scan_of(const World& world, const Pose2& world_from_robot, const
 /// The options that the tests of the paper's method depend on, whatever the defaults are.
 inline MappingOptions paper_options() {
   MappingOptions options;
-  options.chain.method = Method::kPaper;
+  options.run.method = Method::kPaper;
   options.polylines.run_gap_m = 0.20;
   options.polylines.run_gap_beams = 5.0;
   options.polylines.simplify_tolerance_m = 0.05;
@@ -146,7 +146,7 @@ inline MappingOptions paper_options() {
   options.align.icp = {20, IcpGate::kFactor, 3.0, false};
   options.align.trust = {1, 0.10};
   options.align.min_points = 10;
-  options.chain.target_scans = 3;
+  options.align.target.target_scans = 3;
   return options;
 }
 

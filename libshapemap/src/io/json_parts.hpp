@@ -5,9 +5,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "shapemap/align/alignment.hpp"
 #include "shapemap/core/options.hpp"
-#include "shapemap/map/trajectory.hpp"
+#include "shapemap/mapper/map_result.hpp"
+#include "shapemap/matching/scan_match.hpp"
 
 /// What several of our JSON files hold. What is not a number is null.
 namespace shapemap {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "shapemap/map/trajectory.hpp"
+#include "shapemap/mapper/map_result.hpp"
 
 namespace shapemap {
 

@@ -153,7 +153,7 @@ Json position_json(const TracedRun& run, std::size_t position_index, const std::
               {"timestamp_s", number_json(position.timestamp_s)},
               {"sub_scans", sub_scans},
               {"points", shape}};
-  if (run.mapping.chain.method == Method::kPaper) {
+  if (run.mapping.run.method == Method::kPaper) {
     all["histograms"] = histograms_json(points, run.mapping.align.histogram);
   }
   return all;

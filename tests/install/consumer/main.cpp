@@ -3,7 +3,7 @@
 #include <iostream>
 
 #include "shapemap/core/version.hpp"
-#include "shapemap/map/map_log.hpp"
+#include "shapemap/mapper/map_log.hpp"
 #include "shapemap/scan/returns.hpp"
 
 int main() {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "shapemap/map/mapping_options.hpp"
+#include "shapemap/mapper/mapper_options.hpp"
 
 namespace shapemap {
 namespace {

@@ -10,8 +10,8 @@
 #include <cstring>
 #include <random>
 
-#include "io/alignment_record.hpp"
-#include "shapemap/io/alignment_store_file.hpp"
+#include "io/match_cache_record.hpp"
+#include "shapemap/io/match_cache_file.hpp"
 #include "shapemap/scan/beam_angles.hpp"
 #include "support/hostile_log.hpp"
 #include "support/synthetic_world.hpp"
@@ -253,7 +253,7 @@ TEST(MutatedLogs, AreMappedOrRefused) {
 
 class MutatedStates : public testing::Test {
  protected:
-  MutatedStates() { options_.chain.threads = 1; }
+  MutatedStates() { options_.run.threads = 1; }
 
   void map_with(StateOpening opening, std::size_t& num_resumed) {
     AlignmentStoreFile state(path_, opening, log_, options_);

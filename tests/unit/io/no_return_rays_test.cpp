@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "shapemap/io/grid_map.hpp"
+#include "shapemap/grid/occupancy_grid.hpp"
 #include "support/placed_world.hpp"
 
 /// Free space that beams without a return have crossed.

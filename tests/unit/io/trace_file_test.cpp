@@ -139,8 +139,8 @@ TEST_F(TraceOfAWalk, HoldsTheHistogramsThatMatchingSees) {
 }
 
 TEST_F(TraceOfAWalk, HasTheAlternativesOfTheRobustMethod) {
-  options_.chain.method = Method::kRobust;
-  options_.keyframes.step_m = 0.0;  // each scan is aligned to the one before it
+  options_.run.method = Method::kRobust;
+  options_.robust.keyframes.step_m = 0.0;  // each scan is aligned to the one before it
   write(path());
   auto traced = records(path());
   EXPECT_EQ(traced.count("alignment"), 0U);
@@ -158,9 +158,9 @@ TEST_F(TraceOfAWalk, HasTheAlternativesOfTheRobustMethod) {
 }
 
 TEST_F(TraceOfAWalk, TellsHowLinksInDoubtWereJudged) {
-  options_.chain.method = Method::kRobust;
-  options_.keyframes.step_m = 0.0;
-  options_.link_revision.doubt_below = 1.0;  // all are
+  options_.run.method = Method::kRobust;
+  options_.robust.keyframes.step_m = 0.0;
+  options_.robust.edge_verification.doubt_below = 1.0;  // all are
   const MapResult mapped = write(path());
   auto traced = records(path());
   ASSERT_EQ(traced["revision"].size(), 3U);

@@ -9,8 +9,8 @@
 
 #include "shapemap/core/errors.hpp"
 #include "shapemap/core/observer.hpp"
-#include "shapemap/map/align_pairs.hpp"
-#include "shapemap/map/map_log.hpp"
+#include "shapemap/mapper/map_log.hpp"
+#include "shapemap/mapper/match_pairs.hpp"
 #include "shapemap/scan/beam_angles.hpp"
 
 namespace shapemap {
@@ -153,7 +153,7 @@ TEST(Plausibility, MappingNamesThePositionOfALogThatWasMadeByHand) {
   RunObserver observer;
   EXPECT_THAT(refusal([&] { map_log(log, {}, observer); }), HasSubstr("position 3: first_angle of nan rad"));
   MappingOptions paper;
-  paper.chain.method = Method::kPaper;
+  paper.run.method = Method::kPaper;
   EXPECT_THAT(refusal([&] { map_log(log, paper, observer); }), HasSubstr("position 3: first_angle of nan rad"));
   EXPECT_THAT(refusal([&] { align_pairs(log, log, {{0, 1, {}}}, {}, observer); }), HasSubstr("position 3: "));
   log.positions.resize(3);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "shapemap/io/grid_map.hpp"
+#include "shapemap/grid/occupancy_grid.hpp"
 
 /// Maps and trajectories in the formats of other tools.
 namespace shapemap {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "shapemap/map/align_pairs.hpp"
+#include "shapemap/mapper/match_pairs.hpp"
 
 /// Which pairs of positions to align, and what came of it, as files.
 namespace shapemap {

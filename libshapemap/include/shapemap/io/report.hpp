@@ -5,12 +5,12 @@
 #include <utility>
 #include <vector>
 
-#include "shapemap/io/grid_map.hpp"
+#include "shapemap/deskew/deskew.hpp"
+#include "shapemap/grid/occupancy_grid.hpp"
+#include "shapemap/grid/wall_direction.hpp"
 #include "shapemap/io/log_file.hpp"
 #include "shapemap/io/log_selection.hpp"
-#include "shapemap/map/deskew.hpp"
-#include "shapemap/map/map_log.hpp"
-#include "shapemap/map/wall_direction.hpp"
+#include "shapemap/mapper/map_log.hpp"
 
 /// The account of a run, for people and scripts.
 namespace shapemap {

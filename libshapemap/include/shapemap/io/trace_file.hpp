@@ -7,7 +7,7 @@
 
 #include "shapemap/io/log_file.hpp"
 #include "shapemap/io/log_selection.hpp"
-#include "shapemap/map/map_log.hpp"
+#include "shapemap/mapper/map_log.hpp"
 
 /// All steps that led to a map as a file, for figures and analyses; docs/formats.md has its members.
 namespace shapemap {

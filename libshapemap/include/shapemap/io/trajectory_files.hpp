@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "shapemap/core/pose2.hpp"
-#include "shapemap/map/trajectory.hpp"
+#include "shapemap/mapper/map_result.hpp"
 
 /// Poses, and the motions between them with their covariances, as text that other programs and ours read.
 namespace shapemap {

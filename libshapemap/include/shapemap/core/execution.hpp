@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "shapemap/core/observer.hpp"
+
+namespace shapemap {
+
+/// How a long computation runs; nothing of it changes a result.
+struct Execution {
+  int threads = 1;  ///< 0: one per processor
+  RunObserver& observer;
+};
+
+}  // namespace shapemap

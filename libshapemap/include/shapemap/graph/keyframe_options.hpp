@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "shapemap/core/options.hpp"
+
+namespace shapemap {
+
+/// Which scans others are aligned to.
+struct KeyframeOptions {
+  double step_m = 0.50;
+  double turn_rad = 20 * kDegree;
+  int settle_at = 1000;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"keyframe-step-m",
+                "a scan nearer than this to a keyframe needs none of its own [m]; 0: each has its own", 0, 10},
+          self.step_m);
+    visit(Field{"keyframe-turn-deg", "unless it is turned by more [deg]", 0, 180, kDegree}, self.turn_rad);
+    visit(Field{"settle-at",
+                "when there are so many keyframes, loops are closed and those that are there twice let go; 0: never", 0,
+                1000000},
+          self.settle_at);
+  }
+};
+
+}  // namespace shapemap

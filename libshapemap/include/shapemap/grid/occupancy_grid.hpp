@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "shapemap/core/options.hpp"
+#include "shapemap/scan/placed_scan.hpp"
+#include "shapemap/scan/returns.hpp"
+#include "shapemap/scan/scan.hpp"
+
+namespace shapemap {
+
+/// What scans that contradict the rest of the map draw.
+enum class Contradicting {
+  kFillGaps,  ///< only where no other scan has looked, up to the first surface of theirs
+  kAsOthers,
+};
+
+template <>
+struct EnumNames<Contradicting> {
+  static constexpr std::array<std::string_view, 2> names{"fill-gaps", "as-others"};
+};
+
+struct GridMapOptions {
+  double resolution_m = 0.05;
+  Contradicting contradicting = Contradicting::kFillGaps;
+  bool draw_all = false;
+  double clear_no_return_m = 0.0;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"resolution-m", "side of a map cell [m]", 0.001, 10}, self.resolution_m);
+    visit(Field{"contradicting-scans", "what scans that contradict the rest of the map draw into it"},
+          self.contradicting);
+    visit(Field{"draw-all", "make the picture large enough for all returns, also false and far ones"}, self.draw_all);
+    visit(Field{"clear-no-return-m",
+                "beams without a return are drawn free for so long, or up to the laser's range [m]; 0: not at all", 0,
+                1000},
+          self.clear_no_return_m);
+  }
+};
+
+/// Occupancy probabilities on a grid. Row 0 is the top of the picture (largest y), as in ROS map_server.
+struct GridMap {
+  double resolution_m = 0.0;
+  Point2 origin_m{0.0, 0.0};  ///< lower left corner of the lower left cell, in the map frame
+  int width_cells = 0;
+  int height_cells = 0;
+  std::vector<std::uint8_t> grey;  ///< row-major; 0 occupied, 255 free, 127 or 128 unknown
+  std::size_t num_returns = 0;     ///< of all scans that were drawn
+  std::size_t num_outside = 0;     ///< of these, those that lie outside of the picture
+
+  /// Column and row of a point, also outside of the grid.
+  Eigen::Vector2i pixel_at(const Point2& p_in_map_m) const;
+};
+
+/// Ray-traced occupancy grid of the placed positions, built with MRPT's grid map. Those that contradict the rest are
+/// drawn last. The grid ends where the map does: a few far returns that would make it many times larger lie outside,
+/// and their beams are drawn up to its rim, unless `options.draw_all`. Throws OutputError when the map would have more
+/// than 400 million cells.
+GridMap build_grid_map(const Log& log, const std::vector<PlacedPosition>& placed, const ReturnOptions& returns,
+                       const GridMapOptions& options);
+
+}  // namespace shapemap

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "shapemap/scan/placed_scan.hpp"
+#include "shapemap/scan/returns.hpp"
+#include "shapemap/scan/scan.hpp"
+
+/// How each scan of a finished map goes with the map that the others make: tilted scans, crowds and scans in the wrong
+/// place do not.
+namespace shapemap {
+
+struct AgreementOptions {
+  double cell_m = 0.10;
+  double tolerance_m = 0.10;
+  int min_looks = 2;
+  double contradicting_share = 0.15;
+  double min_known_share = 0.2;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"agreement-cell-m", "side of the cells in which scans are compared with the others' map [m]", 0.01, 1},
+          self.cell_m);
+    visit(Field{"agreement-tolerance-m", "so far off its place a surface is still the same [m]", 0, 1},
+          self.tolerance_m);
+    visit(Field{"agreement-min-looks", "so many looks from elsewhere must have seen it otherwise", 1, 1000},
+          self.min_looks);
+    visit(
+        Field{"contradicting-share", "a scan contradicts the map when more of its known beams do; 1: none does", 0, 1},
+        self.contradicting_share);
+    visit(Field{"contradicting-min-known", "and at least this share of its beams ends where others have looked", 0, 1},
+          self.min_known_share);
+  }
+};
+
+/// One for each of `placed`, in their order. Scans that follow each other within 0.5 m and 20 degrees make one look,
+/// and none of a look is evidence about another of it: they may lean, or stand in the same crowd, together. Takes time
+/// linear in the beams, and memory by the area that was seen. Poses beyond any map are left out, with no beams known.
+std::vector<ScanAgreement> scan_agreements(const Log& log, const std::vector<PlacedPosition>& placed,
+                                           const ReturnOptions& returns, const AgreementOptions& options);
+
+/// Writes them into all placed positions, each fragment by itself.
+void judge_scans(const Log& log, const ReturnOptions& returns, const AgreementOptions& options,
+                 std::vector<Fragment>& fragments);
+
+}  // namespace shapemap

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "shapemap/scan/placed_scan.hpp"
+
+namespace shapemap {
+
+/// Scans that follow each other from nearly the same place make one look: they see the same, and err alike, so that
+/// they are no evidence for each other. The result is the index of the first scan of each look, and at the end the
+/// number of scans.
+std::vector<std::size_t> starts_of_looks(const std::vector<PlacedPosition>& placed);
+
+}  // namespace shapemap

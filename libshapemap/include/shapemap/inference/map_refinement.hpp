@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "shapemap/core/observer.hpp"
+#include "shapemap/core/options.hpp"
+#include "shapemap/graph/pose_graph.hpp"
+#include "shapemap/matching/match_search.hpp"
+
+namespace shapemap {
+
+struct RefinementOptions {
+  int rounds = 3;
+  double within_m = 5.0;
+  int neighbours = 8;
+  double least_agree = 0.25;
+  double most_off_m = 0.60;
+  double most_off_rad = 6 * kDegree;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"map-rounds", "rounds of aligning all neighbours and solving for all poses", 0, 100}, self.rounds);
+    visit(Field{"map-within-m", "keyframes nearer than this are neighbours [m]", 0.1, 100}, self.within_m);
+    visit(Field{"map-neighbours", "neighbours that each keyframe is aligned to, at most", 0, 1000}, self.neighbours);
+    visit(Field{"map-least-agree", "share of the points of neighbours that must agree", 0, 1}, self.least_agree);
+    visit(Field{"map-most-off-m", "an alignment farther than this from the map does not count [m]", 0.01, 10},
+          self.most_off_m);
+    visit(Field{"map-most-off-deg", "nor one that is turned more [deg]", 0.1, 180, kDegree}, self.most_off_rad);
+  }
+};
+
+struct RefinedMap {
+  std::vector<Pose2> map_from_node;
+  std::vector<PoseConstraint> neighbours;  ///< the alignments that it was last solved with, beside the chain
+};
+
+/// Aligns all scans that see the same from where the map has them, beside `chain`, and solves for all of it; several
+/// times, since what is nearer to right aligns better. Stops between two times when the observer asks to.
+RefinedMap refine_map(const std::vector<std::shared_ptr<const ScanView>>& views, std::vector<Pose2> map_from_node,
+                      const std::vector<PoseConstraint>& chain, const HypothesisSearchOptions& search,
+                      const RefinementOptions& options, int threads, RunObserver& observer);
+
+}  // namespace shapemap

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "shapemap/graph/odometry_edge.hpp"
+#include "shapemap/core/observer.hpp"
+#include "shapemap/core/options.hpp"
+#include "shapemap/loops/loop_clusters.hpp"
+#include "shapemap/matching/visibility.hpp"
+
+/// Which loops are real, and which of its alternatives each doubtful alignment of the chain takes.
+namespace shapemap {
+
+/// A map that is farther than this off what a loop says contradicts it: the loop is not closed in it.
+inline constexpr double kContradicts_m = 1.0;
+inline constexpr double kContradicts_rad = 10 * kDegree;
+
+/// Pieces of a map that nothing joins lie so far apart: no scan sees so far.
+inline constexpr double kPiecesApart_m = 1e4;
+
+struct MapSearchOptions {
+  int assemblies = 12;
+  double doubt_below = 0.97;
+  int repairs = 12;
+  double trust_cap = 20.0;
+  double least_gain = 3.0;
+  double step_penalty = 4.0;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"loop-assemblies", "maps of which the best is pursued, put together from sure pieces", 1, 1000},
+          self.assemblies);
+    visit(Field{"loop-doubt-below", "a less probable alignment of the chain may be replaced", 0, 1}, self.doubt_below);
+    visit(Field{"loop-repairs", "contradictions that are looked into, in each round", 0, 1000}, self.repairs);
+    visit(Field{"loop-trust-cap",
+                "what all loops between two stretches of the way can weigh at most, as logarithm of odds", 0, 1000},
+          self.trust_cap);
+    visit(Field{"loop-least-gain", "what a change must gain, as logarithm of odds", 0, 1000}, self.least_gain);
+    visit(Field{"step-penalty", "against each usual step or turn that a doubtful one is longer", 0, 100},
+          self.step_penalty);
+  }
+};
+
+/// The map that all scans go together best in.
+struct LoopSolution {
+  std::vector<Pose2> map_from_node;
+  std::vector<int> link_choice;        ///< per link: which alternative; kCut: none, where loops tell better
+  std::vector<std::size_t> accepted;   ///< clusters that are closed, in their order
+  std::vector<std::size_t> component;  ///< per node: the first node of all that it hangs together with
+  double value = 0.0;                  ///< logarithm of odds of all of it, up to a constant
+};
+inline constexpr int kCut = -1;
+
+/// `links[i]` joins node i to node i + 1. The value of a map is the logarithm of its odds: of the loops that it closes,
+/// of the alternatives that it takes, of how well the scans then go together (MapEvidence), less half of the squared
+/// errors of the pose graph. Loops that gain are closed, strongest first; then what contradicts the map is looked into:
+/// a strong loop that does not fit, or a doubtful alignment, may show that another alignment is wrong, or a loop.
+/// Stops early with what there is when the observer asks to.
+LoopSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<ChainLink>& links,
+                         const std::vector<LoopHypothesis>& hypotheses, const std::vector<LoopCluster>& clusters,
+                         const VisibilityOptions& visibility, const MapSearchOptions& options, int threads,
+                         RunObserver& observer);
+
+}  // namespace shapemap

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "shapemap/core/options.hpp"
+#include "shapemap/graph/keyframe_options.hpp"
+#include "shapemap/inference/edge_verification.hpp"
+#include "shapemap/inference/map_refinement.hpp"
+#include "shapemap/inference/map_search.hpp"
+#include "shapemap/inference/sweep_refinement.hpp"
+#include "shapemap/loops/loop_detection.hpp"
+#include "shapemap/matching/scan_matcher.hpp"
+
+namespace shapemap {
+
+/// Whether places are known again.
+struct LoopSwitch {
+  bool close_loops = true;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"close-loops", "know places again; without it, errors add up along the way"}, self.close_loops);
+  }
+};
+
+/// How the robust method chains its alignments.
+struct FrontEndOptions {
+  double companion_weight = 0.5;
+  double doubt_below = 0.3;
+  int more_references = 2;
+  double split_below = 0.7;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"companion-weight", "weight of how a pose goes with the scan before the last", 0, 10},
+          self.companion_weight);
+    visit(Field{"doubt-below", "a less probable alignment is helped by scans further back", 0, 1}, self.doubt_below);
+    visit(Field{"more-references", "so many of them", 0, 10}, self.more_references);
+    visit(Field{"split-below", "a less probable alignment that no loop holds splits the map instead", 0, 1},
+          self.split_below);
+  }
+};
+
+/// All options of the robust method, from two scans to the whole map.
+struct RobustOptions {
+  MatcherOptions matcher;
+  KeyframeOptions keyframes;
+  FrontEndOptions front_end;
+  LoopSwitch loops;
+  LoopDetectionOptions loop_detection;
+  MapSearchOptions map_search;
+  RefinementOptions refinement;
+  EdgeVerificationOptions edge_verification;
+  SweepRefinementOptions sweep_refinement;
+};
+
+}  // namespace shapemap

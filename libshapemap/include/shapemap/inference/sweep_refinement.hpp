@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "shapemap/core/observer.hpp"
+#include "shapemap/core/options.hpp"
+#include "shapemap/graph/pose_graph.hpp"
+#include "shapemap/matching/point_to_line.hpp"
+
+/// Positions whose scan is made of several, each with a small error of its own.
+namespace shapemap {
+
+struct SweepRefinementOptions {
+  int rounds = 10;
+  double sigma_m = 0.015;
+  double sigma_rad = 0.7 * kDegree;
+  double within_m = 6.0;
+  double gate_m = 0.08;
+  int least_partners = 3;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"sub-scan-rounds", "rounds of refining the sub-scans of all positions; 0: each position is rigid", 0,
+                100},
+          self.rounds);
+    visit(Field{"sub-scan-sigma-m", "how far a sub-scan is from its nominal place, standard deviation [m]", 1e-4, 1},
+          self.sigma_m);
+    visit(Field{"sub-scan-sigma-deg", "and how much it is turned [deg]", 0.01, 45, kDegree}, self.sigma_rad);
+    visit(Field{"sub-scan-within-m", "sub-scans of positions nearer than this are aligned to each other [m]", 0.1, 100},
+          self.within_m);
+    visit(Field{"sub-scan-gate-m", "points of two sub-scans farther apart than this are no partners [m]", 0.01, 1},
+          self.gate_m);
+    visit(Field{"sub-scan-least-partners", "two sub-scans with fewer partners are not aligned", 3, 10000},
+          self.least_partners);
+  }
+};
+
+/// Views of the sub-scans of each node, in the node's frame at their nominal headings.
+using SubScanViews = std::vector<std::vector<std::shared_ptr<const ScanView>>>;
+
+struct SubScanPoses {
+  std::vector<Pose2> map_from_node;
+  std::vector<std::vector<Pose2>> node_from_sub_scan;  ///< corrections: without an error, all are the identity
+};
+
+/// Gives each sub-scan a pose of its own, tied to its nominal place in its node, and aligns it to all sub-scans of near
+/// nodes of the same part that share what they see; several times. A node is where its sub-scans say in the mean, as
+/// their errors do not depend on each other. `known` holds nodes where sub-scans do not. Stops between two rounds when
+/// the observer asks to.
+SubScanPoses refine_sub_scans(const SubScanViews& views, const std::vector<Pose2>& map_from_node,
+                              const std::vector<std::size_t>& part_of_node, const std::vector<PoseConstraint>& known,
+                              const PointToLineOptions& line, const SweepRefinementOptions& options, int threads,
+                              RunObserver& observer);
+
+}  // namespace shapemap

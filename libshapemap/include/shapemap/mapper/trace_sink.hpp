@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "shapemap/inference/edge_verification.hpp"
+#include "shapemap/matching/match_search.hpp"
+#include "shapemap/paper/paper_align.hpp"
+#include "shapemap/shape/shape.hpp"
+
+/// How a caller sees what led to a map, while it is made: for figures and analyses. See io/trace_file.hpp for one that
+/// writes it all to a file.
+namespace shapemap {
+
+/// One of the scans that make a partial map. Its points are those of its position, corrected and moved.
+struct TracedTarget {
+  std::size_t position_index = 0;
+  std::size_t num_points = 0;
+  Pose2 ref_from_robot;
+  std::vector<Pose2> robot_from_sub_scan;
+};
+
+/// An alignment by the paper's method; its reference is the last of the targets.
+struct TracedAlignment {
+  std::size_t query_index = 0;
+  std::vector<TracedTarget> targets;
+  const Alignment& alignment;
+  const AlignTrace& steps;
+};
+
+/// What the robust method has to choose from between two positions.
+struct TracedLink {
+  std::size_t reference_index = 0;
+  std::size_t query_index = 0;
+  const std::vector<PoseHypothesis>& hypotheses;
+  std::size_t num_own = 0;      ///< so many, the first, are the best first; the rest is by way of scans further back
+  double view_shortfall = 0.0;  ///< view_shortfall() of the two scans; 0 where a motion was expected
+};
+
+/// What it chose, looking at the whole log.
+struct TracedChoice {
+  std::size_t reference_index = 0;
+  std::size_t query_index = 0;
+  std::size_t alternative = 0;  ///< index into the hypotheses of the link, or of its revision where there is one
+  double margin = 0.0;
+};
+
+/// How a link that was in doubt was judged by all scans of both sides: see revise_links().
+struct TracedRevision {
+  std::size_t reference_index = 0;
+  std::size_t query_index = 0;
+  const std::vector<PoseHypothesis>& hypotheses;  ///< those of the link, and then what was looked for since
+  const std::vector<Balance>& said_by_others;     ///< of each hypothesis
+  const std::vector<double>& vouched;             ///< of each hypothesis
+  std::size_t in_map = 0;                         ///< the hypothesis that the map had until then
+  std::size_t alternative = 0;                    ///< the best
+  double probability = 0.0;                       ///< that it is right
+};
+
+/// Calls come from one thread; shapes and alignments come in the order of the log, and what is referred to is gone
+/// afterwards. Looking on changes no result; what a sink throws ends the run. Positions are indices into the log.
+struct TraceSink {
+  virtual ~TraceSink() = default;
+  /// All that the method looks at of a position, in the robot's frame.
+  virtual void on_shape(std::size_t /*position_index*/, const std::vector<ShapePoint>& /*points*/) {}
+  virtual void on_alignment(const TracedAlignment& /*alignment*/) {}
+  virtual void on_link(const TracedLink& /*link*/) {}
+  /// In order, after all links.
+  virtual void on_revision(const TracedRevision& /*revision*/) {}
+  /// After all links and revisions.
+  virtual void on_choice(const TracedChoice& /*choice*/) {}
+};
+
+}  // namespace shapemap

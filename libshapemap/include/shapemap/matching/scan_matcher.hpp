@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "shapemap/core/options.hpp"
+#include "shapemap/matching/match_probability.hpp"
+#include "shapemap/matching/match_search.hpp"
+#include "shapemap/matching/scan_match.hpp"
+
+/// Alignment of two scans with any heading and offset between them, which says how sure it is.
+namespace shapemap {
+
+struct ConfidenceOptions {
+  double sure_probability = 0.95;
+  double min_agree = 0.03;
+  double max_deviation_m = 0.50;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"sure-probability", "an alignment less probable than this is called ambiguous", 0, 1},
+          self.sure_probability);
+    visit(Field{"min-agree", "one in which a smaller share of the points agrees is refused", 0, 1}, self.min_agree);
+    visit(Field{"max-deviation-m", "one whose position is held worse than this is called degenerate [m]", 0.01, 10},
+          self.max_deviation_m);
+  }
+};
+
+struct MatcherOptions {
+  ViewOptions view;
+  HypothesisSearchOptions search;
+  ConfidenceOptions confidence;
+};
+
+/// The pose of `query` in the frame of `reference`, from shape alone. Never throws for scans that do not match: see
+/// Alignment::status.
+Alignment robust_align(const ScanView& reference, const ScanView& query, const MatcherOptions& options);
+
+/// What is told of a hypothesis.
+RankedPose ranked_pose(const PoseHypothesis& pose);
+
+/// The verdict on `hypotheses`, in any order, of which number `chosen` is taken; `margin` is what it is better by than
+/// any other place. What is known better than by the two scans is the `probability`.
+Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chosen, double margin,
+                 const ConfidenceOptions& options, std::optional<double> probability = {});
+
+}  // namespace shapemap

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "shapemap/core/options.hpp"
+#include "shapemap/paper/partial_map.hpp"
+
+/// Paper, section III: how well an aligned query covers the target.
+namespace shapemap {
+
+/// Which target point a query point is compared to.
+enum class OverlapRule {
+  kNearest,  ///< the nearest one, which must then have a similar tangent
+  kAny,      ///< the nearest one of those that have a similar tangent
+};
+
+template <>
+struct EnumNames<OverlapRule> {
+  static constexpr std::array<std::string_view, 2> names{"nearest", "any"};
+};
+
+struct OverlapOptions {
+  double slack_m = 0.40;
+  double tangent_tolerance_rad = 10 * kDegree;
+  OverlapRule rule = OverlapRule::kNearest;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(Field{"overlap-slack-m", "overlapping points are within the mean distance and this [m]", 0, 10},
+          self.slack_m);
+    visit(Field{"overlap-tangent-deg", "and have tangents within this angle [deg]", 0, 180, kDegree},
+          self.tangent_tolerance_rad);
+    visit(Field{"overlap-rule", "the partner of a query point"}, self.rule);
+  }
+};
+
+/// A query point, where the pose puts it, and its partner in the target.
+struct Partner {
+  std::size_t query = 0;
+  std::size_t target = 0;
+  double distance_m = 0.0;
+};
+
+/// The partner of each query point within `max_distance_m`, for those that have one. Gives up, with fewer than
+/// `at_least`, as soon as so many cannot be reached.
+std::vector<Partner> partners_within(const PartialMap& target, const Shape& query, const Pose2& target_from_query,
+                                     double max_distance_m, const OverlapOptions& options, std::size_t at_least = 0);
+
+struct ScanOverlap {
+  int num_points = 0;            ///< the scan overlap measure
+  double mean_distance_m = 0.0;  ///< the overlap distance
+};
+
+ScanOverlap scan_overlap(const std::vector<Partner>& partners);
+
+}  // namespace shapemap

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/graph/odometry_edge.hpp"
+
+namespace shapemap {
+
+std::vector<Pose2> sure_steps(const std::vector<ChainLink>& links) {
+  constexpr double kSure = 0.9;
+  std::vector<Pose2> steps;
+  for (const ChainLink& link : links) {
+    if (link.exists() && link.probability > kSure) steps.push_back(link.alternatives.front().a_from_b);
+  }
+  return steps;
+}
+
+}  // namespace shapemap

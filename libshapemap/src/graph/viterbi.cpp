@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "viterbi.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace shapemap {
+namespace {
+
+constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+/// The best sum of all links on one side of each alternative, without its own score.
+using Sums = std::vector<std::vector<double>>;
+
+Sums empty_sums(const ChoiceChain& chain) {
+  Sums sums;
+  for (const std::vector<double>& scores : chain.scores) sums.emplace_back(scores.size(), 0.0);
+  return sums;
+}
+
+Sums sums_before(const ChoiceChain& chain) {
+  Sums sums = empty_sums(chain);
+  for (std::size_t link = 1; link < sums.size(); ++link) {
+    for (std::size_t to = 0; to < sums[link].size(); ++to) {
+      double best = kNever;
+      for (std::size_t from = 0; from < sums[link - 1].size(); ++from) {
+        best = std::max(best, sums[link - 1][from] + chain.scores[link - 1][from] + chain.bonus[link - 1][from][to]);
+      }
+      sums[link][to] = best;
+    }
+  }
+  return sums;
+}
+
+Sums sums_after(const ChoiceChain& chain) {
+  Sums sums = empty_sums(chain);
+  for (std::size_t link = sums.size(); link-- > 1;) {
+    for (std::size_t from = 0; from < sums[link - 1].size(); ++from) {
+      double best = kNever;
+      for (std::size_t to = 0; to < sums[link].size(); ++to) {
+        best = std::max(best, sums[link][to] + chain.scores[link][to] + chain.bonus[link - 1][from][to]);
+      }
+      sums[link - 1][from] = best;
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
+std::vector<Choice> best_choices(const ChoiceChain& chain, double full_margin) {
+  const Sums before = sums_before(chain);
+  const Sums after = sums_after(chain);
+  std::vector<Choice> choices;
+  for (std::size_t link = 0; link < chain.scores.size(); ++link) {
+    std::vector<double> sums;
+    for (std::size_t i = 0; i < chain.scores[link].size(); ++i) {
+      sums.push_back(before[link][i] + chain.scores[link][i] + after[link][i]);
+    }
+    const auto best = std::max_element(sums.begin(), sums.end());
+    Choice choice;
+    choice.alternative = static_cast<std::size_t>(best - sums.begin());
+    choice.margin = full_margin;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      choice.behind.push_back(*best - sums[i]);
+      if (i != choice.alternative) choice.margin = std::min(choice.margin, choice.behind.back());
+    }
+    choices.push_back(std::move(choice));
+  }
+  return choices;
+}
+
+}  // namespace shapemap

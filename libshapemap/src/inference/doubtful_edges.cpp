@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "doubtful_edges.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "graph/keyframe_match_cache.hpp"
+#include "shapemap/core/errors.hpp"
+#include "shapemap/inference/edge_verification.hpp"
+#include "shapemap/inference/map_refinement.hpp"
+#include "shapemap/inference/map_search.hpp"
+#include "shapemap/matching/scan_matcher.hpp"
+
+namespace shapemap {
+namespace {
+
+constexpr int kMoreEffort = 4;
+
+/// Some places look alike: a loop that is weaker than this does not vouch for what it joins.
+constexpr double kSureLoop = 18.0;
+
+/// Of a closed loop.
+const Eigen::Matrix3d kLoopCovariance = Eigen::Vector3d(0.01, 0.01, 0.0012).asDiagonal();
+
+class LinkDoubts {
+ public:
+  LinkDoubts(const RobustOptions& options, const Execution& execution, KeyframeChain& chain, KeyframeMap& map,
+             AlignmentStore* store)
+      : options_(options), execution_(execution), chain_(chain), map_(map), store_(store) {
+    for (const Keyframe& keyframe : chain.keyframes) views_.push_back(keyframe.view);
+  }
+
+  bool run() {
+    poses_ = map_.map_from_keyframe;
+    habit_ = motion_habit(chain_);
+    find();
+    if (doubts_.empty()) return false;
+    const double least = options_.front_end.split_below;
+    for (const bool thoroughly : {false, true}) {
+      for (Doubt& doubt : doubts_) add_candidates(doubt, thoroughly);
+      settle(thoroughly ? least : std::max(least, options_.edge_verification.clear_above));
+      cut_those(/*all=*/thoroughly);
+    }
+    drop_contradicted_loops();
+    if (!changed_) return false;
+    map_.map_from_keyframe = poses_;
+    std::vector<PoseConstraint> joined = link_constraints(chain_, map_.link_choice);
+    const std::vector<PoseConstraint> closed = loops([](const ClosedLoop&) { return true; });
+    joined.insert(joined.end(), closed.begin(), closed.end());
+    part(joined);
+    refine(joined);
+    return true;
+  }
+
+ private:
+  struct Doubt {
+    DoubtfulLink of_map;
+    std::size_t in_map;                   ///< which of the link's hypotheses
+    std::vector<std::size_t> hypotheses;  ///< per candidate: which of the link's
+  };
+
+  /// Joins what is certain by the candidates that there are; the rest stays in doubt.
+  void settle(double least_probability) {
+    std::vector<DoubtfulLink> doubtful;
+    for (const Doubt& doubt : doubts_) doubtful.push_back(doubt.of_map);
+    RevisedMap revised = revise_links(views_, poses_, piece_, doubtful, options_.matcher.search.visibility,
+                                      least_probability, execution_.threads, execution_.observer);
+    poses_ = std::move(revised.map_from_node);
+    piece_ = std::move(revised.piece_of_node);
+    std::vector<Doubt> rest;
+    for (std::size_t d = 0; d < doubts_.size(); ++d) {
+      const RevisedLink& link = revised.links[d];
+      const std::size_t hypothesis = doubts_[d].hypotheses[link.candidate];
+      note(doubts_[d], link);
+      if (link.joins) {
+        take(doubts_[d].of_map.link, static_cast<int>(hypothesis));
+      } else {
+        rest.push_back(std::move(doubts_[d]));
+      }
+    }
+    doubts_ = std::move(rest);
+  }
+
+  /// Those that say otherwise than what joined their two sides, or all.
+  void cut_those(bool all) {
+    std::vector<Doubt> rest;
+    for (Doubt& doubt : doubts_) {
+      const std::size_t link = doubt.of_map.link;
+      if (!all && piece_[link] != piece_[link + 1]) {
+        rest.push_back(std::move(doubt));
+        continue;
+      }
+      map_.link_choice[link] = kCut;
+      changed_ = true;
+    }
+    doubts_ = std::move(rest);
+  }
+
+  /// Where the observer asked to stop, nobody was asked, and the link is as probable as before.
+  void note(const Doubt& doubt, const RevisedLink& link) {
+    std::optional<RevisedChoice>& revised = chain_.links[doubt.of_map.link].revised;
+    revised.reset();
+    if (link.said_by_others.empty()) return;
+    revised = RevisedChoice{doubt.hypotheses[link.candidate], link.probability, doubt.in_map,
+                            by_hypothesis(doubt, link.said_by_others), by_hypothesis(doubt, link.vouched)};
+  }
+
+  /// Candidates are all hypotheses, that of the map first.
+  template <class What>
+  static std::vector<What> by_hypothesis(const Doubt& doubt, const std::vector<What>& by_candidate) {
+    std::vector<What> in_order(by_candidate.size());
+    for (std::size_t c = 0; c < by_candidate.size(); ++c) in_order[doubt.hypotheses[c]] = by_candidate[c];
+    return in_order;
+  }
+
+  /// Links that join pieces which neither sure links nor sure loops do, whether the map takes them or cuts them.
+  void find() {
+    std::vector<PoseConstraint> sure = loops([&](const ClosedLoop& loop) { return is_sure(loop); });
+    std::vector<std::size_t> doubtful;
+    for (std::size_t i = 0; i < chain_.links.size(); ++i) {
+      if (is_doubtful(i)) {
+        doubtful.push_back(i);
+      } else if (map_.link_choice[i] != kCut) {
+        sure.push_back({i, i + 1, {}, Eigen::Matrix3d::Identity(), 0.0});
+      }
+    }
+    piece_ = connected_parts(views_.size(), sure);
+    for (const std::size_t i : doubtful) {
+      if (piece_[i] == piece_[i + 1]) continue;
+      doubts_.push_back({{i, {}, chain_.links[i].view_shortfall}, hypothesis_in_map(i), {}});
+    }
+  }
+
+  bool is_sure(const ClosedLoop& loop) const {
+    return loop.strength >= kSureLoop || !looks_all_round(*views_[keyframe_of(loop.a)]) ||
+           !looks_all_round(*views_[keyframe_of(loop.b)]);
+  }
+
+  /// A link that is cut where loops hold both sides is as doubtful as one that is improbable: so are the loops.
+  bool is_doubtful(std::size_t i) const {
+    if (map_.component[i] != map_.component[i + 1] || chain_.links[i].hypotheses.empty()) return false;
+    const double chance = map_.link_choice[i] == kCut ? 0.0 : stated_probability(chain_.links[i]);
+    return chance < std::max(options_.edge_verification.doubt_below, options_.front_end.split_below);
+  }
+
+  template <class Which>
+  std::vector<PoseConstraint> loops(const Which& which) const {
+    std::vector<PoseConstraint> constraints;
+    for (const ClosedLoop& loop : map_.loops) {
+      if (!which(loop)) continue;
+      constraints.push_back({keyframe_of(loop.a), keyframe_of(loop.b), loop.a_from_b, kLoopCovariance, 0.0});
+    }
+    return constraints;
+  }
+
+  /// Loops between pieces that were laid together otherwise, or not at all.
+  void drop_contradicted_loops() {
+    const auto is_contradicted = [&](const ClosedLoop& loop) {
+      const std::size_t a = keyframe_of(loop.a);
+      const std::size_t b = keyframe_of(loop.b);
+      const Pose2 off = inverse(loop.a_from_b) * (inverse(poses_[a]) * poses_[b]);
+      return piece_[a] != piece_[b] || !is_within(off, kContradicts_m, kContradicts_rad);
+    };
+    const auto end = std::remove_if(map_.loops.begin(), map_.loops.end(), is_contradicted);
+    changed_ = changed_ || end != map_.loops.end();
+    map_.loops.erase(end, map_.loops.end());
+  }
+
+  std::size_t keyframe_of(std::size_t position) const {
+    const auto found = std::lower_bound(chain_.keyframes.begin(), chain_.keyframes.end(), position,
+                                        [](const Keyframe& k, std::size_t p) { return k.position_index < p; });
+    return static_cast<std::size_t>(found - chain_.keyframes.begin());
+  }
+
+  void add_candidates(Doubt& doubt, bool thoroughly) {
+    const std::size_t i = doubt.of_map.link;
+    KeyframeLink& link = chain_.links[i];
+    if (thoroughly) {
+      search_again(i);
+    } else if (link_probability(link) < options_.loop_detection.bridge_below) {
+      add_bridges(i);
+    }
+    doubt.hypotheses = {doubt.in_map};
+    doubt.of_map.candidates = {candidate(i, doubt.in_map, in_map(i))};
+    for (std::size_t k = 0; k < link.hypotheses.size(); ++k) {
+      if (k == doubt.in_map) continue;
+      doubt.hypotheses.push_back(k);
+      doubt.of_map.candidates.push_back(candidate(i, k, link.hypotheses[k].ref_from_query));
+    }
+  }
+
+  DoubtfulLink::Candidate candidate(std::size_t i, std::size_t k, const Pose2& a_from_b) const {
+    const PoseHypothesis& hypothesis = chain_.links[i].hypotheses[k];
+    return {a_from_b, hypothesis.score, link_constraint(chain_, i, k).covariance,
+            best_deviation_m(pose_covariance(hypothesis.fit))};
+  }
+
+  /// Where loops have cut a link, what the map has may be none of the link's hypotheses.
+  std::size_t hypothesis_in_map(std::size_t i) {
+    if (map_.link_choice[i] != kCut) return static_cast<std::size_t>(map_.link_choice[i]);
+    std::vector<PoseHypothesis>& known = chain_.links[i].hypotheses;
+    const Pose2 pose = in_map(i);
+    add(i, refined_hypothesis(*views_[i], *views_[i + 1], pose, options_.matcher.search));
+    const auto off = [&](const PoseHypothesis& hypothesis) {
+      return (hypothesis.ref_from_query.translation() - pose.translation()).norm() +
+             angle_between(hypothesis.ref_from_query.theta_rad, pose.theta_rad);
+    };
+    const auto nearest = std::min_element(known.begin(), known.end(),
+                                          [&](const auto& one, const auto& other) { return off(one) < off(other); });
+    return static_cast<std::size_t>(nearest - known.begin());
+  }
+
+  Pose2 in_map(std::size_t i) const { return inverse(map_.map_from_keyframe[i]) * map_.map_from_keyframe[i + 1]; }
+
+  /// What scans before and after a link say of each other is carried to the link by way of the map.
+  void add_bridges(std::size_t i) {
+    const std::vector<Pose2>& poses = map_.map_from_keyframe;
+    for (const LoopHypothesis& bridge :
+         bridges(views_, {i}, {options_.matcher.search, options_.loop_detection, execution_, store_})) {
+      const Pose2 a_from_b =
+          inverse(poses[i]) * (poses[bridge.a] * bridge.a_from_b * inverse(poses[bridge.b])) * poses[i + 1];
+      if (a_from_b.translation().norm() > max_shift_m(*views_[i], *views_[i + 1], options_.matcher.search.voting)) {
+        continue;
+      }
+      add(i, refined_hypothesis(*views_[i], *views_[i + 1], a_from_b, options_.matcher.search));
+    }
+  }
+
+  /// With much more effort than a chain can have for each link.
+  void search_again(std::size_t i) {
+    HypothesisSearchOptions search = options_.matcher.search;
+    search.voting.peaks *= kMoreEffort;
+    search.hypotheses.rotation_peaks *= kMoreEffort;
+    search.hypotheses.refined *= kMoreEffort;
+    search.hypotheses.kept *= kMoreEffort;
+    for (const PoseHypothesis& pose : pose_hypotheses(*views_[i], *views_[i + 1], search)) add(i, pose);
+  }
+
+  /// What is unusual scores less, as in the chain.
+  void add(std::size_t i, PoseHypothesis pose) {
+    pose.score -= surprise(chain_.keyframes[i + 1], habit_, pose.ref_from_query);
+    add_if_new(pose, chain_.links[i].hypotheses);
+  }
+
+  void take(std::size_t link, int hypothesis) {
+    if (map_.link_choice[link] == hypothesis) return;
+    map_.link_choice[link] = hypothesis;
+    changed_ = true;
+  }
+
+  /// Moves what is not joined any more apart.
+  void part(const std::vector<PoseConstraint>& joined) {
+    map_.component = connected_parts(views_.size(), joined);
+    for (std::size_t n = 0; n < views_.size(); ++n) {
+      if (map_.component[n] > 0)
+        map_.map_from_keyframe[n].x_m += kPiecesApart_m * static_cast<double>(map_.component[n]);
+    }
+    const std::vector<bool> lone = lone_constraints(views_.size(), joined);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < chain_.links.size(); ++i) {
+      const bool is_cut = map_.link_choice[i] == kCut;
+      map_.held_by_loops[i] = is_cut ? map_.component[i] == map_.component[i + 1] : !lone[next++];
+    }
+  }
+
+  void refine(const std::vector<PoseConstraint>& known) {
+    map_.map_from_keyframe = refine_map(views_, map_.map_from_keyframe, known, options_.matcher.search,
+                                        options_.refinement, execution_.threads, execution_.observer)
+                                 .map_from_node;
+  }
+
+  const RobustOptions& options_;
+  Execution execution_;
+  KeyframeChain& chain_;
+  KeyframeMap& map_;
+  AlignmentStore* store_;
+  NodeViews views_;
+  std::vector<Doubt> doubts_;
+  MotionHabit habit_;
+  std::vector<Pose2> poses_;        ///< of the pieces, as far as they are joined
+  std::vector<std::size_t> piece_;  ///< of each node
+  bool changed_ = false;
+};
+
+}  // namespace
+
+bool revise_doubtful_links(const RobustOptions& options, const Execution& execution, AlignmentStore* store,
+                           KeyframeChain& chain, KeyframeMap& map) {
+  if (options.edge_verification.doubt_below <= 0.0) return false;
+  std::optional<KeyframeStore> of_keyframes;
+  if (store) of_keyframes.emplace(chain, *store);
+  try {
+    return LinkDoubts(options, execution, chain, map, of_keyframes ? &*of_keyframes : nullptr).run();
+  } catch (const Interrupted&) {
+    return false;
+  }
+}
+
+}  // namespace shapemap

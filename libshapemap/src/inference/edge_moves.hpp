@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "loop_moves.hpp"
+#include "map_hypothesis.hpp"
+#include "shapemap/core/observer.hpp"
+
+namespace shapemap {
+
+/// Looks into what contradicts a map: a strong loop that does not fit, or a doubtful alignment, may show that another
+/// alignment is wrong, or a loop. Stops early when the observer asks to.
+class LoopRepair {
+ public:
+  LoopRepair(LoopProblem& problem, LoopCloser& closer, const std::vector<ChainLink>& links,
+             const std::vector<LoopCluster>& clusters, const MapSearchOptions& options, RunObserver& observer)
+      : problem_(problem),
+        closer_(closer),
+        links_(links),
+        clusters_(clusters),
+        options_(options),
+        observer_(observer) {}
+
+  /// The most doubtful links come first: a wrong loop that needs a better link cut must not get in their way.
+  void repair(LoopChoice& best);
+
+ private:
+  void swing(LoopChoice& map, std::size_t i, const Pose2& move) const;
+  bool better_when_closed(LoopChoice& trial, LoopChoice& best, double hopeless);
+  bool is_new(std::size_t link, int choice, std::size_t loop);
+  bool try_alternatives(LoopChoice& best, std::size_t i);
+  bool try_cutting_for(LoopChoice& best, std::size_t k);
+  std::vector<std::size_t> doubtful_links(std::size_t first, std::size_t last, std::size_t count) const;
+  std::vector<std::size_t> changed_links(const LoopChoice& map) const;
+  void repair_doubtful(LoopChoice& best);
+
+  LoopProblem& problem_;
+  LoopCloser& closer_;
+  const std::vector<ChainLink>& links_;
+  const std::vector<LoopCluster>& clusters_;
+  const MapSearchOptions& options_;
+  RunObserver& observer_;
+  double doubt_below_ = 0.0;                                   ///< links that are less probable may be changed
+  std::set<std::tuple<std::size_t, int, std::size_t>> tried_;  ///< with the best map so far
+};
+
+}  // namespace shapemap

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "loop_moves.hpp"
+
+#include <algorithm>
+
+namespace shapemap {
+namespace {
+
+constexpr int kRoundsOfClosing = 3;
+
+/// What joins two pieces is all that tells of where they are to each other. It must be this strong, come from so many
+/// nodes of each, and be so many times as strong as the next that would join them otherwise: places look alike.
+constexpr double kJoiningStrength = 18.0;
+constexpr std::size_t kJoiningNodes = 3;
+constexpr double kJoiningLead = 2.0;
+
+/// How the piece of the later node moves to where a loop wants it.
+Pose2 join(const LoopChoice& map, const PoseConstraint& loop) {
+  return map.map_from_node[loop.a] * loop.a_from_b * inverse(map.map_from_node[loop.b]);
+}
+
+}  // namespace
+
+/// Closes the loops that the map agrees with as it is.
+bool LoopCloser::close_agreeing(LoopChoice& map) {
+  LoopChoice trial = map;
+  bool any = false;
+  for (std::size_t k = 0; k < clusters_.size(); ++k) {
+    if (trial.accepted[k] || clusters_[k].strength < kLeastStrength) continue;
+    if (!is_within(problem_.off(trial, k), kAgrees_m, kAgrees_rad)) continue;
+    trial.accepted[k] = 1;
+    any = true;
+  }
+  if (!any) return false;
+  problem_.solve(trial);
+  problem_.rate(trial);
+  if (trial.value < map.value) return false;
+  map = std::move(trial);
+  return true;
+}
+
+/// Whether loop `k` may decide where two pieces are to each other.
+bool LoopCloser::can_join(const LoopChoice& map, const std::vector<std::size_t>& piece, std::size_t k) const {
+  const LoopCluster& cluster = clusters_[k];
+  if (cluster.strength < kJoiningStrength || std::min(cluster.num_a, cluster.num_b) < kJoiningNodes) return false;
+  const PoseConstraint& loop = problem_.best_member(k);
+  const Pose2 move = join(map, loop);
+  for (std::size_t other = 0; other < clusters_.size(); ++other) {
+    if (clusters_[other].strength * kJoiningLead < cluster.strength) continue;
+    const PoseConstraint& rival = problem_.best_member(other);
+    const bool same_pieces = piece[rival.a] == piece[loop.a] && piece[rival.b] == piece[loop.b];
+    if (!same_pieces) continue;
+    const Pose2 predicted = inverse(map.map_from_node[rival.a]) * move * map.map_from_node[rival.b];
+    if (!is_within(inverse(rival.a_from_b) * predicted, kContradicts_m, kContradicts_rad)) return false;
+  }
+  return true;
+}
+
+/// Brings two pieces that nothing joins yet to where a loop wants them; false if it may not decide that.
+bool LoopCloser::join_pieces(LoopChoice& map, std::size_t k) const {
+  const PoseConstraint& loop = problem_.best_member(k);
+  const std::vector<std::size_t> piece = pieces_of(problem_, map);
+  if (piece[loop.a] == piece[loop.b]) return true;
+  if (!can_join(map, piece, k)) return false;
+  const Pose2 move = join(map, loop);
+  for (std::size_t n = 0; n < problem_.num_nodes(); ++n) {
+    if (piece[n] == piece[loop.b]) map.map_from_node[n] = move * map.map_from_node[n];
+  }
+  return true;
+}
+
+bool LoopCloser::try_loop(LoopChoice& map, std::size_t k) {
+  LoopChoice trial = map;
+  if (!join_pieces(trial, k)) return false;
+  trial.accepted[k] = 1;
+  problem_.solve(trial);
+  const double without_scans = problem_.worth(k) - 0.5 * (trial.chi_square - map.chi_square);
+  if (without_scans < -options_.trust_cap) return false;
+  problem_.rate(trial);
+  if (trial.value < map.value + options_.least_gain) return false;
+  map = std::move(trial);
+  return true;
+}
+
+void LoopCloser::close(LoopChoice& map) {
+  bool again = true;
+  for (int round = 0; again && round < kRoundsOfClosing; ++round) {
+    again = false;
+    close_all_agreeing(map);
+    for (std::size_t k = 0; k < clusters_.size() && observer_.keep_going(); ++k) {
+      if (map.accepted[k] || clusters_[k].strength < kLeastStrength) continue;
+      const Pose2 off = problem_.off(map, k);
+      if (is_within(inverse(map.refused_off[k]) * off, kAgrees_m, kAgrees_rad)) continue;
+      if (try_loop(map, k)) {
+        again = true;
+        close_all_agreeing(map);
+      } else {
+        map.refused_off[k] = off;
+      }
+    }
+  }
+}
+
+void LoopCloser::close_all_agreeing(LoopChoice& map) {
+  while (observer_.keep_going() && close_agreeing(map)) {
+  }
+}
+
+}  // namespace shapemap

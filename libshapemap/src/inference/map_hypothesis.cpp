@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "map_hypothesis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "shapemap/matching/match_probability.hpp"
+
+namespace shapemap {
+namespace {
+
+/// More members of a cluster hardly hold it better.
+constexpr std::size_t kMembersUsed = 8;
+constexpr double kLoopLoss = 2.0;
+
+/// The chain's probabilities allow for scans of different places, which neighbours are not.
+constexpr double kPriorOfLinks = 2.0;
+
+/// The chain took its neighbours into account as well.
+constexpr double kAgainstChain = 3.0;
+
+/// Steps that are so many times longer than usual are all alike: pieces that nothing joins lie far apart.
+constexpr double kMostUnusual = 100.0;
+
+/// Two loops between nodes so near to each other, on both sides, tell one story.
+constexpr std::size_t kSameStretch = 12;
+
+bool are_of_same_stretches(const PoseConstraint& one, const PoseConstraint& other) {
+  const auto apart = [](std::size_t a, std::size_t b) { return std::max(a, b) - std::min(a, b); };
+  return apart(one.a, other.a) <= kSameStretch && apart(one.b, other.b) <= kSameStretch;
+}
+
+bool agrees(const Pose2& off) { return is_within(off, kAgrees_m, kAgrees_rad); }
+
+/// The best member of each node.
+std::vector<PoseConstraint> constraints_of(const LoopCluster& cluster) {
+  std::vector<PoseConstraint> result;
+  std::set<std::size_t> of_a;
+  std::set<std::size_t> of_b;
+  for (const LoopHypothesis& member : cluster.members) {
+    if (result.size() == kMembersUsed) break;
+    if (of_a.count(member.a) != 0 || of_b.count(member.b) != 0) continue;
+    of_a.insert(member.a);
+    of_b.insert(member.b);
+    result.push_back({member.a, member.b, member.a_from_b, member.covariance, kLoopLoss});
+  }
+  return result;
+}
+
+}  // namespace
+
+LoopProblem::LoopProblem(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<ChainLink>& links,
+                         const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
+                         const MapSearchOptions& options, int threads)
+    : links_(links),
+      clusters_(clusters),
+      options_(options),
+      evidence_(views, visibility, threads),
+      num_nodes_(views.size()),
+      usual_(usual_motion(sure_steps(links))) {
+  for (const LoopCluster& cluster : clusters) loop_constraints_.push_back(constraints_of(cluster));
+  rivals_ = loop_rivals(clusters);
+}
+
+LoopChoice LoopProblem::undecided(std::vector<Pose2> map_from_node) const {
+  LoopChoice choice;
+  choice.link_choice.assign(links_.size(), kCut);
+  choice.accepted.assign(clusters_.size(), 0);
+  choice.refused_off.assign(clusters_.size(), Pose2{kPiecesApart_m, kPiecesApart_m, 0.0});
+  choice.map_from_node = std::move(map_from_node);
+  return choice;
+}
+
+LoopChoice LoopProblem::chain_alone() {
+  LoopChoice choice = undecided(std::vector<Pose2>(num_nodes_));
+  double next_piece_m = 0.0;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (links_[i].exists()) {
+      choice.link_choice[i] = 0;
+      choice.map_from_node[i + 1] = choice.map_from_node[i] * links_[i].alternatives.front().a_from_b;
+    } else {
+      next_piece_m += kPiecesApart_m;
+      choice.map_from_node[i + 1] = {next_piece_m, 0.0, 0.0};
+    }
+  }
+  rate(choice);
+  return choice;
+}
+
+LoopChoice LoopProblem::of_map(std::vector<Pose2> map_from_node) {
+  LoopChoice choice = undecided(std::move(map_from_node));
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Pose2 taken = inverse(choice.map_from_node[i]) * choice.map_from_node[i + 1];
+    for (std::size_t k = 0; k < links_[i].alternatives.size() && choice.link_choice[i] == kCut; ++k) {
+      if (agrees(inverse(links_[i].alternatives[k].a_from_b) * taken)) choice.link_choice[i] = static_cast<int>(k);
+    }
+  }
+  for (std::size_t k = 0; k < clusters_.size(); ++k) {
+    choice.accepted[k] = clusters_[k].strength >= kLeastStrength && agrees(off(choice, k)) ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < links_.size(); ++i) {  // what nothing else joins stays with the chain
+    if (choice.link_choice[i] != kCut || !links_[i].exists()) continue;
+    const std::vector<std::size_t> part = connected_parts(num_nodes_, constraints(choice));
+    if (part[i] != part[i + 1]) choice.link_choice[i] = 0;
+  }
+  solve(choice);
+  rate(choice);
+  return choice;
+}
+
+std::vector<PoseConstraint> LoopProblem::constraints(const LoopChoice& choice) const {
+  std::vector<PoseConstraint> all;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (choice.link_choice[i] == kCut) continue;
+    const ChainLink::Alternative& link = links_[i].alternatives[static_cast<std::size_t>(choice.link_choice[i])];
+    all.push_back({i, i + 1, link.a_from_b, link.covariance, 0.0});
+  }
+  for (std::size_t k = 0; k < clusters_.size(); ++k) {
+    if (choice.accepted[k]) all.insert(all.end(), loop_constraints_[k].begin(), loop_constraints_[k].end());
+  }
+  return all;
+}
+
+void LoopProblem::solve(LoopChoice& choice) const {
+  constexpr int kIterations = 20;
+  PoseGraphSolution solution = solve_pose_graph(choice.map_from_node, constraints(choice), kIterations);
+  choice.map_from_node = std::move(solution.map_from_node);
+  choice.chi_square = solution.chi_square;
+}
+
+double LoopProblem::worth(std::size_t cluster) const {
+  return std::min(clusters_[cluster].strength, options_.trust_cap);
+}
+
+double LoopProblem::worth_in(const LoopChoice& choice, std::size_t cluster) const {
+  double strongest = 0.0;
+  for (const LoopRival& rival : rivals_[cluster]) {
+    if (rival.strength <= strongest) continue;
+    if (!is_within(off(choice, rival.cluster), kContradicts_m, kContradicts_rad)) strongest = rival.strength;
+  }
+  return std::clamp(clusters_[cluster].strength - strongest, 0.0, options_.trust_cap);
+}
+
+std::vector<std::size_t> LoopProblem::rings(const LoopChoice& choice) const {
+  std::vector<PoseConstraint> held = constraints(choice);
+  const std::vector<bool> lone = lone_constraints(num_nodes_, held);
+  std::size_t c = 0;
+  held.erase(std::remove_if(held.begin(), held.end(), [&](const PoseConstraint&) { return lone[c++]; }), held.end());
+  return connected_parts(num_nodes_, held);
+}
+
+/// Of alternatives that are not the best, of links that are cut, and of unusual steps and turns.
+double LoopProblem::cost_of_links(const LoopChoice& choice) const {
+  double cost = 0.0;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const ChainLink& link = links_[i];
+    if (!link.exists() || link.probability >= options_.doubt_below) continue;
+    if (choice.link_choice[i] == kCut) {
+      const double p = std::clamp(std::max(link.probability, link.any_probability), 1e-3, 1.0 - 1e-6);
+      cost += std::max(0.0, log_odds_of(p) + kPriorOfLinks);
+    } else {
+      const auto taken = static_cast<std::size_t>(choice.link_choice[i]);
+      cost += link.alternatives.front().score - link.alternatives[taken].score + (taken == 0 ? 0.0 : kAgainstChain);
+    }
+    const Pose2& from = choice.map_from_node[i];
+    const Pose2& to = choice.map_from_node[i + 1];
+    const double steps = (from.translation() - to.translation()).norm() / usual_.step_m;
+    const double turns = angle_between(from.theta_rad, to.theta_rad) / usual_.turn_rad;
+    for (const double times : {steps, turns}) {
+      cost += options_.step_penalty * std::clamp(times - 1.0, 0.0, kMostUnusual);
+    }
+  }
+  return cost;
+}
+
+void LoopProblem::rate(LoopChoice& choice) {
+  choice.value = MapEvidence::kWeight * evidence_.of(choice.map_from_node, rings(choice)) - 0.5 * choice.chi_square -
+                 cost_of_links(choice) + worth_of_loops(choice);
+}
+
+double LoopProblem::worth_of_loops(const LoopChoice& choice) const {
+  std::vector<std::size_t> closed;
+  for (std::size_t k = 0; k < clusters_.size(); ++k) {
+    if (choice.accepted[k]) closed.push_back(k);
+  }
+  std::vector<PoseConstraint> alike;
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    for (std::size_t j = i + 1; j < closed.size(); ++j) {
+      if (!are_of_same_stretches(best_member(closed[i]), best_member(closed[j]))) continue;
+      alike.push_back({i, j, {}, Eigen::Matrix3d::Identity(), 0.0});
+    }
+  }
+  const std::vector<std::size_t> story = connected_parts(closed.size(), alike);
+  std::vector<double> sums(closed.size(), 0.0);
+  for (std::size_t i = 0; i < closed.size(); ++i) sums[story[i]] += worth_in(choice, closed[i]);
+  double worth = 0.0;
+  for (const double sum : sums) {
+    if (sum > 0.0) worth += options_.trust_cap * (1.0 - std::exp(-sum / options_.trust_cap));
+  }
+  return worth;
+}
+
+Pose2 LoopProblem::off(const LoopChoice& choice, std::size_t cluster) const {
+  const PoseConstraint& best = best_member(cluster);
+  return inverse(best.a_from_b) * (inverse(choice.map_from_node[best.a]) * choice.map_from_node[best.b]);
+}
+
+}  // namespace shapemap

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/inference/map_refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "shapemap/core/parallel_for.hpp"
+#include "shapemap/inference/map_score.hpp"
+#include "shapemap/matching/match_probability.hpp"
+
+namespace shapemap {
+namespace {
+
+constexpr double kMetresPerRadian = 1.5;  // scans that look elsewhere share less of what they see
+constexpr double kLossScale = 1.5;
+
+struct Neighbour {
+  std::size_t a;
+  std::size_t b;
+  double apart;
+};
+
+/// For each node the earlier ones that most likely see the same; half of them from the same stretch of the way.
+std::vector<Neighbour> neighbours(const std::vector<Pose2>& poses, const RefinementOptions& options) {
+  std::vector<std::vector<Neighbour>> near(poses.size());
+  std::vector<std::vector<Neighbour>> far(poses.size());
+  for (const auto& [a, b] : near_pairs(poses, options.within_m)) {
+    if (b - a < 2) continue;
+    const double apart = (poses[a].translation() - poses[b].translation()).norm() +
+                         kMetresPerRadian * angle_between(poses[a].theta_rad, poses[b].theta_rad);
+    (b - a < 12 ? near : far)[b].push_back({a, b, apart});
+  }
+  std::vector<Neighbour> chosen;
+  for (auto* groups : {&near, &far}) {
+    for (std::vector<Neighbour>& group : *groups) {
+      std::stable_sort(group.begin(), group.end(),
+                       [](const Neighbour& one, const Neighbour& other) { return one.apart < other.apart; });
+      const std::size_t count = std::min(group.size(), static_cast<std::size_t>(options.neighbours / 2));
+      chosen.insert(chosen.end(), group.begin(), group.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+  }
+  return chosen;
+}
+
+}  // namespace
+
+RefinedMap refine_map(const std::vector<std::shared_ptr<const ScanView>>& views, std::vector<Pose2> map_from_node,
+                      const std::vector<PoseConstraint>& chain, const HypothesisSearchOptions& search,
+                      const RefinementOptions& options, int threads, RunObserver& observer) {
+  RefinedMap map;
+  for (int round = 0; round < options.rounds && observer.keep_going(); ++round) {
+    const std::vector<Neighbour> pairs = neighbours(map_from_node, options);
+    std::vector<std::optional<PoseConstraint>> found(pairs.size());
+    parallel_for(pairs.size(), threads, [&](std::size_t i) {
+      const auto [a, b, unused] = pairs[i];
+      const Pose2 expected = inverse(map_from_node[a]) * map_from_node[b];
+      const PoseHypothesis pose = refined_hypothesis(*views[a], *views[b], expected, search);
+      const Pose2 off = inverse(expected) * pose.ref_from_query;
+      const double agree = pose.visibility.agree / std::max(pose.visibility.total(), 1e-9);
+      if (agree < options.least_agree || off.translation().norm() > options.most_off_m ||
+          std::abs(off.theta_rad) > options.most_off_rad) {
+        return;
+      }
+      found[i] = PoseConstraint{a, b, pose.ref_from_query, pose_covariance(pose.fit), kLossScale};
+    });
+    map.neighbours.clear();
+    for (const auto& constraint : found) {
+      if (constraint) map.neighbours.push_back(*constraint);
+    }
+    std::vector<PoseConstraint> constraints = chain;
+    for (PoseConstraint& link : constraints) link.loss_scale = kLossScale;
+    constraints.insert(constraints.end(), map.neighbours.begin(), map.neighbours.end());
+    map_from_node = solve_pose_graph(map_from_node, constraints, 30).map_from_node;
+  }
+  map.map_from_node = std::move(map_from_node);
+  return map;
+}
+
+}  // namespace shapemap

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/inference/map_search.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <future>
+#include <system_error>
+
+#include "edge_moves.hpp"
+#include "loop_moves.hpp"
+#include "map_hypothesis.hpp"
+#include "submap_merging.hpp"
+
+namespace shapemap {
+namespace {
+
+/// No more maps are assembled when so many in a row are not better by this share.
+constexpr int kAssembliesInVain = 3;
+constexpr double kLeastGain = 0.01;
+
+/// Passes on whether to keep going, and remembers for other threads: an observer is asked from one only.
+class StopSign : public RunObserver {
+ public:
+  explicit StopSign(RunObserver& observer) : observer_(observer) {}
+  bool keep_going() override {
+    if (!observer_.keep_going()) stopped_ = true;
+    return !stopped_;
+  }
+
+  class Reader : public RunObserver {
+   public:
+    explicit Reader(const StopSign& sign) : sign_(sign) {}
+    bool keep_going() override { return !sign_.stopped_; }
+
+   private:
+    const StopSign& sign_;
+  };
+
+ private:
+  RunObserver& observer_;
+  std::atomic<bool> stopped_{false};
+};
+
+/// What another thread computes, which learns meanwhile when to stop.
+LoopChoice waited_for(std::future<LoopChoice>& result, StopSign& stop) {
+  constexpr std::chrono::milliseconds kPatience{20};
+  while (result.wait_for(kPatience) == std::future_status::timeout) stop.keep_going();
+  return result.get();
+}
+
+/// The best of some maps that are assembled of pieces; no more are tried when several in a row are no better.
+LoopChoice assembled(LoopProblem& problem, const std::vector<ChainLink>& links,
+                     const std::vector<LoopHypothesis>& hypotheses, const std::vector<Pose2>& map_of_chain,
+                     const MapSearchOptions& options, RunObserver& observer) {
+  LoopChoice best;
+  int in_vain = 0;
+  for (int variant = 0; variant < options.assemblies && in_vain < kAssembliesInVain; ++variant) {
+    if (variant > 0 && !observer.keep_going()) break;
+    LoopChoice trial =
+        problem.of_map(assembled_map(links, hypotheses, map_of_chain, problem.evidence(), variant, observer));
+    const bool is_better =
+        variant == 0 || trial.value > best.value + std::max(options.least_gain, kLeastGain * std::abs(best.value));
+    in_vain = is_better ? 0 : in_vain + 1;
+    if (is_better) best = std::move(trial);
+  }
+  return best;
+}
+
+}  // namespace
+
+LoopSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<ChainLink>& links,
+                         const std::vector<LoopHypothesis>& hypotheses, const std::vector<LoopCluster>& clusters,
+                         const VisibilityOptions& visibility, const MapSearchOptions& options, int threads,
+                         RunObserver& observer) {
+  // Each has evidence of its own, so that neither depends on how far the other has come.
+  LoopProblem of_chain(views, links, clusters, visibility, options, 1);
+  LoopProblem problem(views, links, clusters, visibility, options, threads);
+  StopSign stop(observer);
+  const LoopChoice chain = of_chain.chain_alone();
+  const auto closed_chain = [&](RunObserver& asked) {
+    LoopChoice closed = chain;
+    LoopCloser(of_chain, clusters, options, asked).close(closed);
+    return closed;
+  };
+  StopSign::Reader reader(stop);
+  std::future<LoopChoice> meanwhile;
+  try {
+    if (threads != 1) meanwhile = std::async(std::launch::async, closed_chain, std::ref(reader));
+  } catch (const std::system_error&) {
+    // No thread is to be had: it is done afterwards.
+  }
+  LoopCloser closer(problem, clusters, options, stop);
+  LoopChoice best = assembled(problem, links, hypotheses, chain.map_from_node, options, stop);
+  closer.close(best);
+  LoopChoice other = meanwhile.valid() ? waited_for(meanwhile, stop) : closed_chain(stop);
+  if (other.value > best.value) best = std::move(other);
+  LoopRepair(problem, closer, links, clusters, options, stop).repair(best);
+  LoopSolution solution;
+  solution.component = connected_parts(views.size(), problem.constraints(best));
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    if (best.accepted[k]) solution.accepted.push_back(k);
+  }
+  solution.map_from_node = std::move(best.map_from_node);
+  solution.link_choice = std::move(best.link_choice);
+  solution.value = best.value;
+  return solution;
+}
+
+}  // namespace shapemap

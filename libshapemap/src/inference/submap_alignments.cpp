@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "submap_alignments.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace shapemap {
+namespace {
+
+/// Joints say the same when they differ by no more, and a little more for each node that lies between them.
+constexpr double kSame_m = 0.40;
+constexpr double kSame_rad = 6 * kDegree;
+constexpr double kDrift_m = 0.02;
+constexpr double kDrift_rad = 0.15 * kDegree;
+
+/// Scans see the same walls: witnesses do not add up without limit.
+constexpr double kMostStrength = 20.0;
+
+/// Of two pieces; further ones start from joints that are worth little.
+constexpr std::size_t kMostWays = 16;
+
+/// What a joint counts for in the mean, at least; and its direction, against its place: as if the scan were so large.
+constexpr double kLeastWeight = 0.1;
+constexpr double kSquaredSize_m2 = 4.0;
+
+std::size_t apart(std::size_t i, std::size_t j) { return i < j ? j - i : i - j; }
+
+}  // namespace
+
+PieceJoints::Seen PieceJoints::seen_from(std::size_t f, std::size_t joint) const {
+  const PoseConstraint& c = joints_[joint].constraint;
+  const double worth = joints_[joint].worth;
+  if (piece_of_node_[c.a] == f) {
+    return {joint, c.a, c.b, piece_from_node_[c.a] * c.a_from_b, piece_from_node_[c.b], worth};
+  }
+  return {joint, c.b, c.a, piece_from_node_[c.b] * inverse(c.a_from_b), piece_from_node_[c.a], worth};
+}
+
+bool PieceJoints::agree(const Pose2& f_from_g, const Seen& one, const Seen& seed) {
+  const Pose2 expected = f_from_g * one.g_from_b;
+  const auto nodes = static_cast<double>(apart(one.a, seed.a) + apart(one.b, seed.b));
+  return (expected.translation() - one.f_from_b.translation()).norm() < kSame_m + kDrift_m * nodes &&
+         angle_between(expected.theta_rad, one.f_from_b.theta_rad) < kSame_rad + kDrift_rad * nodes;
+}
+
+/// The weighted mean of places and directions (Umeyama 1991).
+Pose2 PieceJoints::mean_of(const std::vector<Seen>& joints) {
+  Point2 mean_f = Point2::Zero();
+  Point2 mean_g = Point2::Zero();
+  double sum = 0.0;
+  for (const Seen& joint : joints) {
+    const double weight = joint.worth + kLeastWeight;
+    mean_f += weight * joint.f_from_b.translation();
+    mean_g += weight * joint.g_from_b.translation();
+    sum += weight;
+  }
+  mean_f /= sum;
+  mean_g /= sum;
+  double sine = 0.0;
+  double cosine = 0.0;
+  for (const Seen& joint : joints) {
+    const double weight = joint.worth + kLeastWeight;
+    const Point2 p = joint.f_from_b.translation() - mean_f;
+    const Point2 q = joint.g_from_b.translation() - mean_g;
+    const double turn_rad = joint.f_from_b.theta_rad - joint.g_from_b.theta_rad;
+    sine += weight * (q.x() * p.y() - q.y() * p.x() + kSquaredSize_m2 * std::sin(turn_rad));
+    cosine += weight * (q.dot(p) + kSquaredSize_m2 * std::cos(turn_rad));
+  }
+  const double theta_rad = std::atan2(sine, cosine);
+  const Point2 shift = mean_f - rotate(mean_g, theta_rad);
+  return {shift.x(), shift.y(), theta_rad};
+}
+
+/// As that of a cluster of loops: the best joint of each node, summed over the side that says less.
+double PieceJoints::strength(const std::vector<Seen>& joints) {
+  std::map<std::size_t, double> by_f;
+  std::map<std::size_t, double> by_g;
+  for (const Seen& joint : joints) {
+    double& of_a = by_f[joint.a];
+    double& of_b = by_g[joint.b];
+    of_a = std::max(of_a, joint.worth);
+    of_b = std::max(of_b, joint.worth);
+  }
+  double of_f = 0.0;
+  double of_g = 0.0;
+  for (const auto& [unused, worth] : by_f) of_f += worth;
+  for (const auto& [unused, worth] : by_g) of_g += worth;
+  return std::min({of_f, of_g, kMostStrength});
+}
+
+std::vector<Way> PieceJoints::ways(std::size_t f, const std::vector<std::size_t>& between) const {
+  std::vector<Seen> seen;
+  for (const std::size_t joint : between) seen.push_back(seen_from(f, joint));
+  std::stable_sort(seen.begin(), seen.end(),
+                   [](const Seen& one, const Seen& other) { return one.worth > other.worth; });
+  std::vector<Way> found;
+  std::set<std::size_t> used;
+  for (const Seen& seed : seen) {
+    if (found.size() == kMostWays) break;
+    if (used.count(seed.joint) != 0) continue;
+    Way way;
+    std::vector<Seen> agreeing;
+    const Pose2 f_from_g = seed.f_from_b * inverse(seed.g_from_b);
+    for (const Seen& joint : seen) {
+      if (joint.joint == seed.joint || agree(f_from_g, joint, seed)) agreeing.push_back(joint);
+    }
+    for (const Seen& joint : agreeing) way.joints.push_back(joint.joint);
+    used.insert(way.joints.begin(), way.joints.end());
+    way.f_from_g = mean_of(agreeing);
+    way.gain = strength(agreeing) + joints_[seed.joint].noise;
+    found.push_back(std::move(way));
+  }
+  return found;
+}
+
+bool PieceJoints::holds(const Joint& joint) const {
+  const PoseConstraint& c = joint.constraint;
+  const Pose2 off = inverse(c.a_from_b) * (inverse(piece_from_node_[c.a]) * piece_from_node_[c.b]);
+  return is_within(off, kSame_m, kSame_rad);
+}
+
+std::vector<Crossing> crossings(const std::vector<std::size_t>& of_f, const std::vector<std::size_t>& of_g) {
+  std::vector<Crossing> found;
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < of_f.size() && j < of_g.size()) {
+    const bool f_first = of_f[i] < of_g[j];
+    const bool is_last =
+        f_first ? i + 1 == of_f.size() || of_f[i + 1] > of_g[j] : j + 1 == of_g.size() || of_g[j + 1] > of_f[i];
+    if (is_last) found.push_back({of_f[i], of_g[j], apart(of_f[i], of_g[j])});
+    ++(f_first ? i : j);
+  }
+  return found;
+}
+
+}  // namespace shapemap

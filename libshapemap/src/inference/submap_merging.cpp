@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "submap_merging.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <random>
+#include <set>
+#include <utility>
+
+#include "motion/step_statistics.hpp"
+#include "shapemap/graph/pose_graph.hpp"
+#include "shapemap/matching/match_probability.hpp"
+#include "submap_alignments.hpp"
+
+namespace shapemap {
+namespace {
+
+/// Links that are at least so probable are not questioned here.
+constexpr double kSure = 0.97;
+
+/// Alignments by themselves allow for scans of different places, which neighbours are not. And hypotheses support each
+/// other, though each by itself be improbable.
+constexpr double kPrior = 2.0;
+constexpr double kMostPerNode = 6.0;
+constexpr double kLoss = 2.0;
+
+/// Against each length of a usual step that one is longer, and against being elsewhere than the chain's next: of places
+/// of which nothing is known, some look alike.
+constexpr double kStepPenalty = 4.0;
+constexpr double kRevisitPenalty = 10.0;
+constexpr double kPenaltyPerLogStep = 2.0;
+
+/// Ways that are looked into, of two pieces.
+constexpr std::size_t kWaysTried = 4;
+
+/// What a way gains or loses by chance, at most.
+constexpr double kNoise = 4.0;
+
+constexpr int kIterations = 10;
+
+using PiecePair = std::pair<std::size_t, std::size_t>;
+
+/// The best way, and how much better it is than the next, or than none.
+struct Lead {
+  Way best;
+  double lead = 0.0;
+  bool is_stale = false;  ///< one of the pieces has grown since
+};
+
+double log_odds(double probability) {
+  const double p = std::clamp(probability, 1e-6, 1.0 - 1e-6);
+  return log_odds_of(p);
+}
+
+class Assembly {
+ public:
+  Assembly(const std::vector<ChainLink>& links, std::vector<Pose2> map_of_chain, MapEvidence& evidence)
+      : links_(links),
+        chain_(map_of_chain),
+        pose_(std::move(map_of_chain)),
+        evidence_(evidence),
+        usual_step_m_(usual_motion(sure_steps(links)).step_m),
+        piece_(pose_.size(), 0),
+        log_(pose_.size(), 0) {
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      piece_[i + 1] = piece_[i] + (is_sure(i) ? 0 : 1);
+      log_[i + 1] = log_[i] + (links[i].exists() ? 0 : 1);
+    }
+    nodes_.resize(piece_.back() + 1);
+    within_.resize(nodes_.size());
+    for (std::size_t n = 0; n < piece_.size(); ++n) nodes_[piece_[n]].push_back(n);
+  }
+
+  void add_joints(const std::vector<LoopHypothesis>& hypotheses) {
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      const std::vector<ChainLink::Alternative>& alternatives = links_[i].alternatives;
+      for (const ChainLink::Alternative& way : alternatives) {
+        const double behind = std::min(0.0, way.score - alternatives.front().score);
+        add_joint({i, i + 1, way.a_from_b, way.covariance, kLoss}, log_odds(links_[i].probability * std::exp(behind)));
+      }
+    }
+    for (const LoopHypothesis& loop : hypotheses) {
+      add_joint({loop.a, loop.b, loop.a_from_b, loop.covariance, kLoss}, loop.log_odds);
+    }
+  }
+
+  void disturb(int variant) {
+    if (variant == 0) return;
+    std::mt19937_64 random(static_cast<std::uint64_t>(variant));
+    for (Joint& joint : joints_) {
+      const double share = std::ldexp(static_cast<double>(random() >> 11U), -53);
+      joint.noise = kNoise * (2.0 * share - 1.0);
+    }
+  }
+
+  std::vector<Pose2> run(RunObserver& observer) {
+    for (const auto& entry : between_) leads_[entry.first] = lead_of(entry.first);
+    while (observer.keep_going() && !leads_.empty()) {
+      const auto next = std::max_element(leads_.begin(), leads_.end(), [](const auto& one, const auto& other) {
+        return one.second.lead < other.second.lead;
+      });
+      if (next->second.is_stale) {
+        next->second = lead_of(next->first);
+        continue;
+      }
+      if (next->second.lead < 0.0) break;
+      const PiecePair pair = next->first;
+      const Way way = std::move(next->second.best);
+      lay_together(pair, way);
+    }
+    join_the_rest();
+    return std::move(pose_);
+  }
+
+ private:
+  bool is_sure(std::size_t link) const { return links_[link].exists() && links_[link].probability >= kSure; }
+
+  void add_joint(const PoseConstraint& constraint, double odds) {
+    if (log_[constraint.a] != log_[constraint.b]) return;
+    const std::size_t f = piece_[constraint.a];
+    const std::size_t g = piece_[constraint.b];
+    (f == g ? within_[f] : between_[{std::min(f, g), std::max(f, g)}]).push_back(joints_.size());
+    joints_.push_back({constraint, std::clamp(odds + kPrior, 0.0, kMostPerNode), 0.0});
+  }
+
+  double cost_of_steps(const PiecePair& pair, const Pose2& f_from_g) const {
+    double cost = 0.0;
+    std::size_t least = piece_.size();
+    for (const Crossing& crossing : crossings(nodes_[pair.first], nodes_[pair.second])) {
+      const double metres =
+          (pose_[crossing.in_f].translation() - (f_from_g * pose_[crossing.in_g]).translation()).norm();
+      const auto steps = static_cast<double>(crossing.num_steps);
+      const double longer = std::clamp(metres / (usual_step_m_ * steps) - 1.0, 0.0, 10.0);
+      cost += kStepPenalty * longer * std::sqrt(steps);
+      least = std::min(least, crossing.num_steps);
+    }
+    if (least > 1) cost += kRevisitPenalty + kPenaltyPerLogStep * std::log(static_cast<double>(least));
+    return cost;
+  }
+
+  Lead lead_of(const PiecePair& pair) {
+    std::vector<Way> ways = PieceJoints(joints_, pose_, piece_).ways(pair.first, between_[pair]);
+    const auto better = [](const Way& one, const Way& other) { return one.gain > other.gain; };
+    for (Way& way : ways) way.gain -= cost_of_steps(pair, way.f_from_g);
+    std::stable_sort(ways.begin(), ways.end(), better);
+    ways.resize(std::min(ways.size(), kWaysTried));
+    for (Way& way : ways) {
+      way.gain +=
+          MapEvidence::kWeight * evidence_.between(pose_, nodes_[pair.first], nodes_[pair.second], way.f_from_g);
+    }
+    std::stable_sort(ways.begin(), ways.end(), better);
+    const double second = ways.size() > 1 ? std::max(0.0, ways[1].gain) : 0.0;
+    return {ways[0], ways[0].gain - second};
+  }
+
+  /// Whether all that is known of how the two pieces lie to each other is of one pair of scans.
+  bool is_hinge(const Way& way) const {
+    const PoseConstraint& first = joints_[way.joints.front()].constraint;
+    return std::all_of(way.joints.begin(), way.joints.end(), [&](std::size_t joint) {
+      const PoseConstraint& constraint = joints_[joint].constraint;
+      return constraint.a == first.a && constraint.b == first.b;
+    });
+  }
+
+  void lay_together(const PiecePair& pair, const Way& way) {
+    const auto [f, g] = pair;
+    for (const std::size_t n : nodes_[g]) {
+      pose_[n] = way.f_from_g * pose_[n];
+      piece_[n] = f;
+    }
+    const bool f_is_smaller = nodes_[f].size() < nodes_[g].size();
+    std::vector<std::size_t> all;
+    std::merge(nodes_[f].begin(), nodes_[f].end(), nodes_[g].begin(), nodes_[g].end(), std::back_inserter(all));
+    nodes_[f] = std::move(all);
+    nodes_[g].clear();
+    for (const std::vector<std::size_t>* more : {&within_[g], &between_[pair]}) {
+      within_[f].insert(within_[f].end(), more->begin(), more->end());
+    }
+    between_.erase(pair);
+    leads_.erase(pair);
+    if (!is_hinge(way)) solve(f, way.joints);  // else nothing bends
+    for (const PiecePair& other : inherit(f, g, f_is_smaller)) leads_[other] = lead_of(other);
+  }
+
+  /// What joined `g` to others now joins `f`. Returns the pairs that new joints have come to, or to which the smaller
+  /// of the two belonged; to others too little is new to look again before it is their turn.
+  std::vector<PiecePair> inherit(std::size_t f, std::size_t g, bool f_is_smaller) {
+    std::vector<PiecePair> changed;
+    std::vector<PiecePair> gone;
+    for (const auto& entry : between_) {
+      const auto [one, other] = entry.first;
+      if (one == g || other == g) gone.push_back(entry.first);
+      if (one != f && other != f) continue;
+      if (f_is_smaller) {
+        changed.push_back(entry.first);
+      } else {
+        leads_[entry.first].is_stale = true;
+      }
+    }
+    for (const PiecePair& old : gone) {
+      const std::size_t third = old.first == g ? old.second : old.first;
+      const PiecePair now{std::min(f, third), std::max(f, third)};
+      const std::vector<std::size_t> joints = std::move(between_[old]);
+      between_.erase(old);
+      leads_.erase(old);
+      between_[now].insert(between_[now].end(), joints.begin(), joints.end());
+      changed.push_back(now);
+    }
+    std::sort(changed.begin(), changed.end());
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    return changed;
+  }
+
+  /// A piece is held by its sure links, by the joints that were decided on, `taken`, and by all others that agree with
+  /// it.
+  void solve(std::size_t f, const std::vector<std::size_t>& taken) {
+    const std::vector<std::size_t>& nodes = nodes_[f];
+    const auto number = [&](std::size_t n) {
+      return static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), n) - nodes.begin());
+    };
+    std::vector<PoseConstraint> constraints;
+    const auto add = [&](PoseConstraint constraint) {
+      constraint.a = number(constraint.a);
+      constraint.b = number(constraint.b);
+      constraints.push_back(constraint);
+    };
+    std::vector<Pose2> poses;
+    for (const std::size_t n : nodes) {
+      poses.push_back(pose_[n]);
+      if (n >= links_.size() || !is_sure(n)) continue;
+      const ChainLink::Alternative& link = links_[n].alternatives.front();
+      add({n, n + 1, link.a_from_b, link.covariance, 0.0});
+    }
+    const PieceJoints pieces(joints_, pose_, piece_);
+    const std::set<std::size_t> decided(taken.begin(), taken.end());
+    for (const std::size_t joint : within_[f]) {
+      if (decided.count(joint) != 0 || pieces.holds(joints_[joint])) add(joints_[joint].constraint);
+    }
+    const std::vector<Pose2> solved = solve_pose_graph(poses, constraints, kIterations).map_from_node;
+    for (std::size_t k = 0; k < nodes.size(); ++k) pose_[nodes[k]] = solved[k];
+  }
+
+  void join_the_rest() {
+    for (std::size_t i = 0; i < links_.size(); ++i) {
+      const std::size_t f = piece_[i];
+      const std::size_t g = piece_[i + 1];
+      if (f == g) continue;
+      const Pose2 move = pose_[i] * inverse(chain_[i]) * chain_[i + 1] * inverse(pose_[i + 1]);
+      for (const std::size_t n : nodes_[g]) {
+        pose_[n] = move * pose_[n];
+        piece_[n] = f;
+      }
+      nodes_[f].insert(nodes_[f].end(), nodes_[g].begin(), nodes_[g].end());
+      nodes_[g].clear();
+    }
+  }
+
+  const std::vector<ChainLink>& links_;
+  std::vector<Pose2> chain_;
+  std::vector<Pose2> pose_;  ///< in the frame of the piece
+  MapEvidence& evidence_;
+  double usual_step_m_;
+  std::vector<std::size_t> piece_;               ///< of each node
+  std::vector<std::size_t> log_;                 ///< of each node: alignments of the chain join all of one log
+  std::vector<std::vector<std::size_t>> nodes_;  ///< of each piece, in order
+  std::vector<Joint> joints_;
+  std::vector<std::vector<std::size_t>> within_;  ///< joints of each piece
+  std::map<PiecePair, std::vector<std::size_t>> between_;
+  std::map<PiecePair, Lead> leads_;
+};
+
+}  // namespace
+
+std::vector<Pose2> assembled_map(const std::vector<ChainLink>& links, const std::vector<LoopHypothesis>& hypotheses,
+                                 std::vector<Pose2> map_of_chain, MapEvidence& evidence, int variant,
+                                 RunObserver& observer) {
+  if (map_of_chain.size() < 2) return map_of_chain;
+  Assembly assembly(links, std::move(map_of_chain), evidence);
+  assembly.add_joints(hypotheses);
+  assembly.disturb(variant);
+  return assembly.run(observer);
+}
+
+}  // namespace shapemap

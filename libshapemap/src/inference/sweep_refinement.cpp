@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/inference/sweep_refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "shapemap/core/parallel_for.hpp"
+#include "shapemap/inference/map_score.hpp"
+#include "shapemap/matching/match_probability.hpp"
+
+namespace shapemap {
+namespace {
+
+/// Of two sub-scans. Those of whole scans are larger: these hold the errors of their sub-scans as well.
+constexpr LineNoise kNoise{0.012, 0.03};
+
+/// What whole scans say counts so many times less, in the deviation: it only holds what sub-scans leave free.
+constexpr double kKnownSlack = 5.0;
+
+/// The gate of the first round, in gates of the last, and what is left of it after each.
+constexpr double kFirstGate = 4.0;
+constexpr double kGateShrinks = 0.7;
+
+constexpr double kStiffness = 0.002;
+
+/// Beyond so many standard deviations an alignment of two sub-scans counts less and less.
+constexpr double kLoss = 2.0;
+
+/// Farther off than this, two sub-scans have found other surfaces.
+constexpr double kMostOff_m = 0.30;
+constexpr double kMostOff_rad = 4 * kDegree;
+
+class Refinement {
+ public:
+  Refinement(const SubScanViews& views, const std::vector<Pose2>& map_from_node,
+             const std::vector<std::size_t>& part_of_node, const PointToLineOptions& line,
+             const SweepRefinementOptions& options, int threads)
+      : views_(views), part_of_node_(part_of_node), line_(line), options_(options), threads_(threads) {
+    // All poses are solved for at once: a step of a single pair goes no farther than its lines.
+    line_.max_iterations = 1;
+    line_.stiffness = kStiffness;
+    poses_ = map_from_node;
+    for (std::size_t node = 0; node < views.size(); ++node) {
+      first_.push_back(poses_.size());
+      poses_.insert(poses_.end(), views[node].size(), map_from_node[node]);
+    }
+    tie_sub_scans();
+  }
+
+  void hold(const std::vector<PoseConstraint>& known) {
+    for (PoseConstraint constraint : known) {
+      constraint.covariance *= kKnownSlack * kKnownSlack;
+      constraint.loss_scale = kLoss;
+      held_.push_back(constraint);
+    }
+  }
+
+  void run_round(int round) {
+    line_.first_gate_m = line_.last_gate_m =
+        options_.gate_m * std::max(1.0, kFirstGate * std::pow(kGateShrinks, round));
+    std::vector<PoseConstraint> constraints = held_;
+    const std::vector<PoseConstraint> found = aligned_pairs();
+    constraints.insert(constraints.end(), found.begin(), found.end());
+    constexpr int kIterations = 30;
+    poses_ = solve_pose_graph(poses_, constraints, kIterations).map_from_node;
+  }
+
+  SubScanPoses result() const {
+    SubScanPoses result;
+    for (std::size_t node = 0; node < views_.size(); ++node) {
+      result.map_from_node.push_back(poses_[node]);
+      result.node_from_sub_scan.emplace_back();
+      for (std::size_t s = 0; s < views_[node].size(); ++s) {
+        result.node_from_sub_scan.back().push_back(inverse(poses_[node]) * poses_[first_[node] + s]);
+      }
+    }
+    return result;
+  }
+
+ private:
+  struct Pair {
+    std::size_t a;  ///< of `poses_`
+    std::size_t b;
+    const ScanView* reference;
+    const ScanView* query;
+  };
+
+  void tie_sub_scans() {
+    const double area_m2 = options_.sigma_m * options_.sigma_m;
+    const Eigen::Matrix3d covariance =
+        Eigen::Vector3d(area_m2, area_m2, options_.sigma_rad * options_.sigma_rad).asDiagonal();
+    for (std::size_t node = 0; node < views_.size(); ++node) {
+      for (std::size_t s = 0; s < views_[node].size(); ++s) {
+        held_.push_back({node, first_[node] + s, {}, covariance, 0.0});
+      }
+    }
+  }
+
+  std::vector<Pair> pairs() const {
+    const std::vector<Pose2> nodes(poses_.begin(), poses_.begin() + static_cast<std::ptrdiff_t>(views_.size()));
+    std::vector<Pair> pairs;
+    for (std::size_t a = 0; a < views_.size(); ++a) {
+      for (std::size_t s = 0; s < views_[a].size(); ++s) {
+        for (std::size_t t = s + 1; t < views_[a].size(); ++t) {
+          pairs.push_back({first_[a] + s, first_[a] + t, views_[a][s].get(), views_[a][t].get()});
+        }
+      }
+    }
+    for (const auto& [a, b] : near_pairs(nodes, options_.within_m)) {
+      if (part_of_node_[a] != part_of_node_[b]) continue;
+      for (std::size_t s = 0; s < views_[a].size(); ++s) {
+        for (std::size_t t = 0; t < views_[b].size(); ++t) {
+          pairs.push_back({first_[a] + s, first_[b] + t, views_[a][s].get(), views_[b][t].get()});
+        }
+      }
+    }
+    return pairs;
+  }
+
+  std::vector<PoseConstraint> aligned_pairs() const {
+    const std::vector<Pair> all = pairs();
+    std::vector<std::optional<PoseConstraint>> found(all.size());
+    parallel_for(all.size(), threads_, [&](std::size_t i) { found[i] = aligned(all[i]); });
+    std::vector<PoseConstraint> constraints;
+    for (const auto& constraint : found) {
+      if (constraint) constraints.push_back(*constraint);
+    }
+    return constraints;
+  }
+
+  std::optional<PoseConstraint> aligned(const Pair& pair) const {
+    const Pose2 expected = inverse(poses_[pair.a]) * poses_[pair.b];
+    const LineFit fit = fit_to_lines(*pair.reference, *pair.query, expected, line_);
+    const Pose2 off = inverse(expected) * fit.ref_from_query;
+    if (fit.partners < options_.least_partners || off.translation().norm() > kMostOff_m ||
+        std::abs(off.theta_rad) > kMostOff_rad) {
+      return std::nullopt;
+    }
+    return PoseConstraint{pair.a, pair.b, fit.ref_from_query, pose_covariance(fit, kNoise), kLoss};
+  }
+
+  const SubScanViews& views_;
+  const std::vector<std::size_t>& part_of_node_;
+  PointToLineOptions line_;
+  const SweepRefinementOptions& options_;
+  int threads_;
+  std::vector<Pose2> poses_;        ///< of the nodes, then of their sub-scans
+  std::vector<std::size_t> first_;  ///< per node: the first of its sub-scans in `poses_`
+  std::vector<PoseConstraint> held_;
+};
+
+}  // namespace
+
+SubScanPoses refine_sub_scans(const SubScanViews& views, const std::vector<Pose2>& map_from_node,
+                              const std::vector<std::size_t>& part_of_node, const std::vector<PoseConstraint>& known,
+                              const PointToLineOptions& line, const SweepRefinementOptions& options, int threads,
+                              RunObserver& observer) {
+  Refinement refinement(views, map_from_node, part_of_node, line, options, threads);
+  refinement.hold(known);
+  for (int round = 0; round < options.rounds && observer.keep_going(); ++round) refinement.run_round(round);
+  return refinement.result();
+}
+
+}  // namespace shapemap

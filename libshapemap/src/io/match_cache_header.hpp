@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "shapemap/mapper/mapper_options.hpp"
+#include "shapemap/scan/scan.hpp"
+
+/// The head of a state file: what its alignments depend on.
+namespace shapemap {
+
+/// No header is longer.
+inline constexpr std::size_t kMostHeaderBytes = 65536;
+
+std::string state_header(const Log& log, const MappingOptions& options);
+
+/// Why the alignments of a file that begins with `found` are not those of a run with the header `expected`; empty when
+/// they are.
+std::string header_difference(std::string_view found, std::string_view expected);
+
+}  // namespace shapemap

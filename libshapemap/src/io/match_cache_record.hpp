@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "shapemap/matching/match_cache.hpp"
+
+/// The bytes of an alignment in a state file: its size, its checksum, and words of eight bytes; all little endian.
+namespace shapemap {
+
+inline constexpr std::size_t kRecordHeadBytes = 8;
+
+struct RecordHead {
+  std::uint32_t num_bytes = 0;  ///< of the body that follows
+  std::uint32_t checksum = 0;   ///< of these
+};
+
+struct AlignmentRecord {
+  AlignmentKey key;
+  std::vector<PoseHypothesis> hypotheses;
+};
+
+void append_u32(std::string& bytes, std::uint32_t value);
+std::uint32_t u32_at(std::string_view bytes, std::size_t offset);
+std::uint32_t checksum_of(std::string_view bytes);
+
+/// Head and body.
+std::string record_bytes(const AlignmentKey& key, const std::vector<PoseHypothesis>& hypotheses);
+
+/// Nothing for a size that no body has; `bytes` are kRecordHeadBytes.
+std::optional<RecordHead> record_head(std::string_view bytes);
+
+/// Nothing for a body that is damaged.
+std::optional<AlignmentRecord> alignment_record(const RecordHead& head, std::string_view body);
+
+}  // namespace shapemap

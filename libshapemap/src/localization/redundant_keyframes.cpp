@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "redundant_keyframes.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "shapemap/core/parallel_for.hpp"
+#include "shapemap/inference/map_score.hpp"
+#include "shapemap/inference/map_search.hpp"
+#include "shapemap/matching/pair_evidence.hpp"
+
+namespace shapemap {
+namespace {
+
+/// For each keyframe the earlier ones at its place, nearest first.
+std::vector<std::vector<std::size_t>> earlier_at_place(const KeyframeMap& map, const KeyframeOptions& options) {
+  std::vector<std::vector<std::pair<double, std::size_t>>> near(map.map_from_keyframe.size());
+  for (const auto& [a, b] : near_pairs(map.map_from_keyframe, options.step_m)) {
+    const Pose2 a_from_b = inverse(map.map_from_keyframe[a]) * map.map_from_keyframe[b];
+    if (map.component[a] != map.component[b] || !is_within(a_from_b, options.step_m, options.turn_rad)) continue;
+    near[b].emplace_back(a_from_b.translation().norm(), a);
+  }
+  std::vector<std::vector<std::size_t>> earlier(near.size());
+  for (std::size_t b = 0; b < near.size(); ++b) {
+    std::sort(near[b].begin(), near[b].end());
+    for (const auto& [distance, a] : near[b]) earlier[b].push_back(a);
+  }
+  return earlier;
+}
+
+/// Those that follow or precede such a one closely.
+std::vector<bool> near(const std::vector<bool>& is_unknown) {
+  constexpr std::size_t kNear = 24;
+  std::vector<bool> result(is_unknown.size(), false);
+  for (std::size_t b = 0; b < is_unknown.size(); ++b) {
+    if (!is_unknown[b]) continue;
+    const std::size_t end = std::min(b + kNear + 1, result.size());
+    for (std::size_t i = b - std::min(b, kNear); i < end; ++i) result[i] = true;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<StandIn> stand_ins_for(const KeyframeChain& chain, const std::vector<Pose2>& map_from_keyframe,
+                                   std::size_t b, const std::vector<std::size_t>& earlier, std::size_t most,
+                                   const RobustOptions& options) {
+  std::vector<StandIn> fitting;
+  for (const std::size_t a : earlier) {
+    if (fitting.size() == most) break;
+    const Pose2 expected = inverse(map_from_keyframe[a]) * map_from_keyframe[b];
+    const PoseHypothesis pose =
+        refined_hypothesis(*chain.keyframes[a].view, *chain.keyframes[b].view, expected, options.matcher.search);
+    const bool is_as_in_map = is_within(inverse(expected) * pose.ref_from_query, kAsInMap_m, kAsInMap_rad);
+    if (is_as_in_map && can_stand_for(pose)) fitting.push_back({a, pose});
+  }
+  return fitting;
+}
+
+std::vector<bool> settled_keyframes(const KeyframeChain& chain, const KeyframeMap& map) {
+  const std::size_t count = chain.keyframes.size();
+  std::vector<bool> sure(chain.links.size());
+  for (std::size_t i = 0; i < sure.size(); ++i) {
+    sure[i] = map.link_choice[i] != kCut && (map.held_by_loops[i] || stated_probability(chain.links[i]) >= kSureLink);
+  }
+  std::vector<bool> settled(count, false);
+  for (std::size_t i = 1; i + kKeyframesInUse < count; ++i) {
+    settled[i] = sure[i - 1] && sure[i] && chain.keyframes[i].sweep_views.empty();
+  }
+  return settled;
+}
+
+StandIns find_stand_ins(const KeyframeChain& chain, const KeyframeMap& map, const RobustOptions& options, int threads) {
+  const std::vector<bool> settled = settled_keyframes(chain, map);
+  const std::vector<std::vector<std::size_t>> earlier = earlier_at_place(map, options.keyframes);
+  std::vector<std::vector<StandIn>> fitting(settled.size());
+  parallel_for(settled.size(), threads, [&](std::size_t b) {
+    if (settled[b]) fitting[b] = stand_ins_for(chain, map.map_from_keyframe, b, earlier[b], kStandInsTried, options);
+  });
+  StandIns result;
+  result.of_keyframe.resize(settled.size());
+  std::vector<bool> is_unknown(settled.size(), false);
+  for (std::size_t b = 0; b < settled.size(); ++b) {
+    if (!settled[b]) continue;
+    const auto is_long_before = [&](std::size_t a) { return a + kKeyframesInUse < b; };
+    const bool again = std::any_of(earlier[b].begin(), earlier[b].end(), is_long_before);
+    const bool known = std::any_of(fitting[b].begin(), fitting[b].end(),
+                                   [&](const StandIn& candidate) { return is_long_before(candidate.keyframe); });
+    is_unknown[b] = again && !known && fitting[b].size() < kStandInsTried;  // or else not all were tried
+    if (known) ++result.num_known;
+    if (known || is_unknown[b]) ++result.num_again;
+    for (const StandIn& candidate : fitting[b]) {
+      if (result.of_keyframe[candidate.keyframe]) continue;  // it is not kept itself
+      result.of_keyframe[b] = candidate;
+      break;
+    }
+  }
+  result.is_in_doubt = near(is_unknown);
+  for (std::size_t b = 0; b < settled.size(); ++b) {
+    if (result.is_in_doubt[b]) result.of_keyframe[b].reset();
+  }
+  return result;
+}
+
+}  // namespace shapemap

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/loops/loop_detection.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "shapemap/core/errors.hpp"
+#include "shapemap/core/parallel_for.hpp"
+#include "shapemap/loops/place_descriptor.hpp"
+#include "shapemap/matching/match_probability.hpp"
+
+namespace shapemap {
+namespace {
+
+/// Of each pair of scans, so many poses.
+constexpr std::size_t kPosesPerPair = 3;
+constexpr std::size_t kBridgePoses = 5;
+
+/// An alignment that is held worse than this does not tell where the place is: along a bare corridor, any will do.
+constexpr double kHeld_m = 0.2;
+
+/// Nodes on either side of a bridge.
+constexpr std::size_t kBridgeNodes = 4;
+
+/// Pairs that are worked on together, and between which the observer is asked. Part of no result.
+constexpr std::size_t kBlock = 64;
+
+struct Pair {
+  std::size_t a;
+  std::size_t b;
+};
+
+/// Where most of the pairs have little in common, all rotations would be tried on each.
+HypothesisSearchOptions without_all_rotations(HypothesisSearchOptions search) {
+  search.hypotheses.all_rotations_below = -std::numeric_limits<double>::infinity();
+  return search;
+}
+
+/// For very many pairs: a search with less effort, which other scans of the same two stretches make up for.
+HypothesisSearchOptions quick(HypothesisSearchOptions search) {
+  search.hypotheses.rotation_peaks = std::max(1, search.hypotheses.rotation_peaks * 3 / 4);
+  search.hypotheses.shape_segments = 0;
+  search.hypotheses.refined = std::max(1, search.hypotheses.refined / 2);
+  search.voting.peaks = std::max(1, search.voting.peaks / 2);
+  return search;
+}
+
+/// How pairs are aligned, and what of it is kept.
+struct PairSearch {
+  HypothesisSearchOptions options;
+  SearchKind kind;
+  std::size_t most_poses;  ///< of each pair
+  double least_probability;
+  Execution execution;
+  AlignmentStore* store;
+};
+
+/// That the two scans are of one place, and that it is where the alignment says.
+double log_odds_of_place(double probability, const Eigen::Matrix3d& covariance) {
+  const double p = std::clamp(probability, 1e-9, 1.0 - 1e-9);
+  return log_odds_of(p) - std::log(std::max(1.0, worst_deviation_m(covariance) / kHeld_m));
+}
+
+std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, const PairSearch& search) {
+  const std::vector<PoseHypothesis> poses =
+      pose_hypotheses(*views[pair.a], *views[pair.b], search.options, {pair.a, pair.b, search.kind}, search.store);
+  std::vector<LoopHypothesis> found;
+  for (std::size_t k = 0; k < std::min(search.most_poses, poses.size()); ++k) {
+    const double margin = k == 0 ? lead_of_first(poses) : poses[k].score - poses[0].score;
+    const double probability = match_probability(poses[k], margin);
+    if (probability < search.least_probability) continue;
+    const Eigen::Matrix3d covariance = pose_covariance(poses[k].fit);
+    found.push_back({pair.a, pair.b, poses[k].ref_from_query, covariance, log_odds_of_place(probability, covariance)});
+  }
+  return found;
+}
+
+/// Adds to `all`. Throws Interrupted when the observer asks to stop.
+void align_all(const NodeViews& views, const std::vector<Pair>& pairs, const PairSearch& search,
+               std::vector<LoopHypothesis>& all) {
+  RunObserver& observer = search.execution.observer;
+  for (std::size_t first = 0; first < pairs.size(); first += kBlock) {
+    if (!observer.keep_going()) throw Interrupted();
+    const std::size_t count = std::min(kBlock, pairs.size() - first);
+    std::vector<std::vector<LoopHypothesis>> found(count);
+    parallel_for(count, search.execution.threads,
+                 [&](std::size_t i) { found[i] = aligned(views, pairs[first + i], search); });
+    for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+    observer.on_progress(first + count, pairs.size());
+  }
+}
+
+}  // namespace
+
+std::vector<LoopHypothesis> likely_loops(const NodeViews& views, std::size_t first, const LoopSearch& search) {
+  const LoopDetectionOptions& options = search.detection;
+  const int threads = search.execution.threads;
+  std::vector<PlaceSignature> signatures(views.size());
+  parallel_for(views.size(), threads, [&](std::size_t i) { signatures[i] = place_signature(*views[i]); });
+  PlaceIndex index;
+  for (const PlaceSignature& signature : signatures) index.add(signature);
+
+  const auto shortest = static_cast<std::size_t>(options.shortest_loop);
+  const auto count = static_cast<std::size_t>(options.likely_places);
+  std::vector<std::vector<LikelyPlace>> places(views.size());
+  parallel_for(views.size(), threads, [&](std::size_t b) {
+    if (b >= std::max(first, shortest)) places[b] = index.most_alike(b, b - shortest + 1, count);
+  });
+  std::vector<Pair> pairs;
+  for (std::size_t b = 0; b < views.size(); ++b) {
+    for (const LikelyPlace& place : places[b]) pairs.push_back({place.node, b});
+  }
+  const PairSearch quickly{quick(without_all_rotations(search.matching)),
+                           SearchKind::kLoop,
+                           kPosesPerPair,
+                           options.least_probability,
+                           search.execution,
+                           search.store};
+  std::vector<LoopHypothesis> found;
+  try {
+    align_all(views, pairs, quickly, found);
+  } catch (const Interrupted&) {  // those that were found are of use
+  }
+  return found;
+}
+
+std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<std::size_t>& links,
+                                    const LoopSearch& search) {
+  std::vector<Pair> pairs;
+  for (const std::size_t link : links) {
+    for (std::size_t a = link + 1 - std::min(kBridgeNodes, link + 1); a <= link; ++a) {
+      for (std::size_t b = link + 1; b < std::min(views.size(), link + 1 + kBridgeNodes); ++b) pairs.push_back({a, b});
+    }
+  }
+  const PairSearch thoroughly{
+      without_all_rotations(search.matching), SearchKind::kBorrowed, kBridgePoses, 0.0, search.execution, search.store};
+  std::vector<LoopHypothesis> found;
+  align_all(views, pairs, thoroughly, found);
+  return found;
+}
+
+}  // namespace shapemap

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <map>
+
+#include "edge_verdict.hpp"
+#include "front_end.hpp"
+#include "inference/doubtful_edges.hpp"
+#include "inference/optimized_map.hpp"
+#include "inference/sweep_poses.hpp"
+#include "keyframe_culling.hpp"
+#include "localization/revisit_tracking.hpp"
+#include "loops/loop_candidates.hpp"
+#include "methods.hpp"
+#include "motion/trajectory_smoothing.hpp"
+#include "shapemap/core/errors.hpp"
+
+namespace shapemap {
+namespace {
+
+/// Of a pose in the frame of the map.
+Eigen::Matrix3d covariance_in_map(const Alignment& alignment, const Pose2& map_from_robot) {
+  Eigen::Matrix3d map_from_reference = Eigen::Matrix3d::Identity();
+  const double heading_rad = map_from_robot.theta_rad - alignment.ref_from_query.theta_rad;
+  map_from_reference.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(heading_rad).toRotationMatrix();
+  return map_from_reference * alignment.covariance * map_from_reference.transpose();
+}
+
+/// Gives each position of the log its place in `result`.
+class Placing {
+ public:
+  Placing(const Log& log, const KeyframeChain& chain, const KeyframeMap& map, const SubScanCorrections& sub_scans,
+          const MappingOptions& options, TraceSink* sink, MapResult& result)
+      : log_(log), chain_(chain), map_(map), sub_scans_(sub_scans), options_(options), sink_(sink), result_(result) {}
+
+  void run() {
+    for (std::size_t i = 0; i < chain_.keyframes.size(); ++i) place_keyframe(i);
+    for (const AttachedScan& scan : chain_.attached) place_attached(scan);
+    for (Fragment& fragment : result_.fragments) {
+      std::sort(fragment.positions.begin(), fragment.positions.end(),
+                [](const PlacedPosition& a, const PlacedPosition& b) { return a.position_index < b.position_index; });
+      smooth(fragment);
+      const Pose2 first_from_map = inverse(fragment.positions.front().map_from_robot);
+      for (PlacedPosition& placed : fragment.positions) placed.map_from_robot = first_from_map * placed.map_from_robot;
+    }
+  }
+
+ private:
+  void place_keyframe(std::size_t i) {
+    PositionResult& outcome = result_.positions[chain_.keyframes[i].position_index];
+    if (i > 0 && !chain_.links[i - 1].settled_covariance) {
+      judge_link(chain_, map_, i - 1, options_.robust.matcher.confidence, sink_, outcome);
+    }
+    outcome.fragment = fragment_of(i);
+    outcome.starts_fragment = i == 0 || map_.component[i] != map_.component[i - 1];
+    PlacedPosition& placed = add(outcome, map_.map_from_keyframe[i]);
+    if (!sub_scans_.empty()) placed.robot_from_sub_scan = sub_scans_[i];
+  }
+
+  void place_attached(const AttachedScan& scan) {
+    PositionResult& outcome = result_.positions[scan.position_index];
+    outcome.alignment = judged({scan.pose}, 0, kFullMargin, options_.robust.matcher.confidence);
+    outcome.reference = chain_.keyframes[scan.keyframe].position_index;
+    outcome.is_keyframe = false;
+    outcome.fragment = fragment_of(scan.keyframe);
+    add(outcome, map_.map_from_keyframe[scan.keyframe] * scan.pose.ref_from_query);
+  }
+
+  /// Fragments are numbered in the order of the log.
+  int fragment_of(std::size_t keyframe) {
+    const auto [found, is_new] =
+        fragment_of_component_.try_emplace(map_.component[keyframe], static_cast<int>(result_.fragments.size()));
+    if (is_new) result_.fragments.emplace_back();
+    return found->second;
+  }
+
+  /// Scans that keyframes stand for are placed one by one: their motion is smoothed.
+  void smooth(Fragment& fragment) const {
+    std::vector<TrackedPose> poses;
+    for (const PlacedPosition& placed : fragment.positions) {
+      const PositionResult& outcome = result_.positions[placed.position_index];
+      TrackedPose pose{placed.position_index, outcome.session, placed.map_from_robot, {}};
+      if (!outcome.is_keyframe) pose.covariance = covariance_in_map(outcome.alignment, placed.map_from_robot);
+      poses.push_back(pose);
+    }
+    smooth_trajectory(poses);
+    for (std::size_t i = 0; i < poses.size(); ++i) fragment.positions[i].map_from_robot = poses[i].map_from_robot;
+  }
+
+  PlacedPosition& add(const PositionResult& outcome, const Pose2& map_from_robot) {
+    PlacedPosition placed;
+    placed.position_index = outcome.position_index;
+    placed.timestamp_s = outcome.timestamp_s;
+    placed.map_from_robot = map_from_robot;
+    placed.robot_from_sub_scan.resize(log_.positions[placed.position_index].sub_scans.size());
+    std::vector<PlacedPosition>& positions = result_.fragments[static_cast<std::size_t>(outcome.fragment)].positions;
+    positions.push_back(std::move(placed));
+    return positions.back();
+  }
+
+  const Log& log_;
+  const KeyframeChain& chain_;
+  const KeyframeMap& map_;
+  const SubScanCorrections& sub_scans_;
+  const MappingOptions& options_;
+  TraceSink* sink_;
+  MapResult& result_;
+  std::map<std::size_t, int> fragment_of_component_;
+};
+
+/// After an interrupt nothing more is read, or looked for; what was read is still made one map.
+class Finishing : public RunObserver {
+ public:
+  explicit Finishing(RunObserver& observer) : observer_(observer) {}
+  void on_stage(std::string_view stage) override { observer_.on_stage(stage); }
+  void on_progress(std::size_t done, std::size_t total) override { observer_.on_progress(done, total); }
+  void on_warning(std::string_view message) override { observer_.on_warning(message); }
+
+ private:
+  RunObserver& observer_;
+};
+
+/// So many new keyframes are followed in the settled map at a time.
+constexpr std::size_t kFollowedAtOnce = 64;
+
+/// Reads the log. When there are many keyframes, loops are closed, and those that are there twice let go. From then on,
+/// those of places that are known again go soon; all is solved anew when there are many more.
+class Reading {
+ public:
+  Reading(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink, AlignmentStore* store,
+          MapResult& result)
+      : options_(options),
+        observer_(observer),
+        sink_(sink),
+        store_(store),
+        result_(result),
+        growth_(log, options, observer, sink, store, result),
+        revisits_(options.robust) {}
+
+  void run() {
+    const auto settle_at = std::max(static_cast<std::size_t>(options_.robust.keyframes.settle_at), 4 * kKeyframesInUse);
+    const bool settles = options_.robust.loops.close_loops && options_.robust.keyframes.settle_at > 0;
+    std::size_t most = settles ? settle_at : std::numeric_limits<std::size_t>::max();
+    // Without loops, what was read is let go now and then.
+    std::size_t next = options_.robust.loops.close_loops ? most : settle_at;
+    while (growth_.extend(next)) {
+      const auto start = std::chrono::steady_clock::now();
+      if (chain().keyframes.size() < most) {
+        if (has_settled_) follow();
+      } else if (settle()) {
+        has_settled_ = true;
+        most = std::max(settle_at, 2 * chain().keyframes.size());
+      } else {
+        most = chain().keyframes.size() + settle_at / 2;
+      }
+      next = std::min(most, chain().keyframes.size() + kFollowedAtOnce);
+      result_.times.loops_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+  }
+
+  KeyframeChain& chain() { return growth_.chain(); }
+  LoopKnowledge& known() { return known_; }
+
+ private:
+  Execution execution() const { return {options_.run.threads, observer_}; }
+  LoopSearch loop_search() const {
+    return {options_.robust.matcher.search, options_.robust.loop_detection, execution(), store_};
+  }
+
+  /// False where the map is not right yet: what it has at one place does not look the same. The more there is of the
+  /// log, the more loops tell.
+  bool settle() {
+    find_loops(chain(), chain().keyframes.size() - kKeyframesInUse, loop_search(), known_);
+    if (!observer_.keep_going()) return false;
+    KeyframeMap map = map_with_loops(chain(), known_.hypotheses, Improbable::kIsCut, options_.robust, execution());
+    if (!observer_.keep_going()) return false;
+    const StandIns stand_ins = find_stand_ins(chain(), map, options_.robust, options_.run.threads);
+    if (!stand_ins.are_of_right_map()) return false;
+    for (std::size_t b = 0; b < map.component.size(); ++b) {
+      if (stand_ins.is_in_doubt[b]) map.component[b] = b;  // the robot is not to be followed there
+    }
+    retire(stand_ins.of_keyframe, map);
+    revisits_.start(chain(), map, chain().keyframes.size() - kKeyframesInUse);
+    return true;
+  }
+
+  void follow() {
+    if (revisits_.is_lost()) {
+      find_loops(chain(), chain().keyframes.size() - kKeyframesInUse, loop_search(), known_);
+      if (!observer_.keep_going()) return;
+    }
+    Revisits::Followed followed = revisits_.follow(chain(), known_.hypotheses);
+    const std::size_t num_open = chain().keyframes.size() - followed.num_followed;
+    retire(followed.stand_ins, followed.map);
+    revisits_.renew(std::move(followed.map), num_open);
+  }
+
+  void retire(const std::vector<std::optional<StandIn>>& stand_ins, KeyframeMap& map) {
+    for (std::size_t i = 0; i < chain().links.size(); ++i) {
+      const bool stays = !stand_ins[i] && !stand_ins[i + 1];
+      if (!stays && !chain().links[i].settled_covariance) judge(map, i);
+    }
+    retire_keyframes(stand_ins, options_, map, chain(), known_);
+  }
+
+  /// A link that goes has its verdict now.
+  void judge(const KeyframeMap& map, std::size_t link) {
+    PositionResult& outcome = result_.positions[chain().keyframes[link + 1].position_index];
+    judge_link(chain(), map, link, options_.robust.matcher.confidence, sink_, outcome);
+  }
+
+  const MappingOptions& options_;
+  RunObserver& observer_;
+  TraceSink* sink_;
+  AlignmentStore* store_;
+  MapResult& result_;
+  FrontEnd growth_;
+  Revisits revisits_;
+  bool has_settled_ = false;
+  LoopKnowledge known_;
+};
+
+void trace_revised(const KeyframeChain& chain, TraceSink& sink) {
+  for (std::size_t i = 0; i < chain.links.size(); ++i) {
+    const KeyframeLink& link = chain.links[i];
+    if (!link.revised) continue;
+    sink.on_revision({chain.keyframes[i].position_index, chain.keyframes[i + 1].position_index, link.hypotheses,
+                      link.revised->said_by_others, link.revised->vouched, link.revised->in_map,
+                      link.revised->hypothesis, link.revised->probability});
+  }
+}
+
+}  // namespace
+
+void map_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
+                  AlignmentStore* store, MapResult& result) {
+  Reading reading(log, options, observer, sink, store, result);
+  reading.run();
+  const auto start = std::chrono::steady_clock::now();
+  Finishing finishing(observer);
+  const auto unless_interrupted = [&]() -> RunObserver& { return observer.keep_going() ? observer : finishing; };
+
+  const auto execution = [&](RunObserver& asked) { return Execution{options.run.threads, asked}; };
+
+  KeyframeChain& chain = reading.chain();
+  KeyframeMap map;
+  if (options.robust.loops.close_loops) {
+    find_loops(chain, chain.keyframes.size(),
+               {options.robust.matcher.search, options.robust.loop_detection, execution(unless_interrupted()), store},
+               reading.known());
+    const Improbable improbable =
+        options.robust.edge_verification.doubt_below > 0.0 ? Improbable::kStays : Improbable::kIsCut;
+    map =
+        map_with_loops(chain, reading.known().hypotheses, improbable, options.robust, execution(unless_interrupted()));
+  } else {
+    map = map_of_chain(chain, options.robust);
+  }
+  const Execution rest = execution(unless_interrupted());
+  SubScanCorrections sub_scans = refine_sub_scans_of_map(chain, options.robust, rest, map);
+  if (options.robust.loops.close_loops && revise_doubtful_links(options.robust, rest, store, chain, map)) {
+    sub_scans = refine_sub_scans_of_map(chain, options.robust, rest, map);
+  }
+  result.times.loops_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.loops = std::move(map.loops);
+  if (sink) trace_revised(chain, *sink);
+  Placing(log, chain, map, sub_scans, options, sink, result).run();
+  if (!observer.keep_going()) throw Interrupted();
+}
+
+}  // namespace shapemap

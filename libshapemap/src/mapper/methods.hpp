@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "shapemap/core/observer.hpp"
+#include "shapemap/mapper/map_result.hpp"
+#include "shapemap/mapper/mapper_options.hpp"
+#include "shapemap/mapper/trace_sink.hpp"
+#include "shapemap/matching/match_cache.hpp"
+#include "shapemap/scan/scan.hpp"
+
+/// The two ways to map a log. Each fills in positions, fragments and times, and throws Interrupted when the observer
+/// asks to stop; what is in `result` then is whole. `sink` and `store` may be null.
+namespace shapemap {
+
+/// The paper's: each scan against the partial map of the few before it.
+void chain_by_paper(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
+                    MapResult& result);
+
+/// The robust one: a chain of keyframes, in which places are known again.
+void map_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
+                  AlignmentStore* store, MapResult& result);
+
+}  // namespace shapemap

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scan_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shapemap/matching/match_probability.hpp"
+#include "shapemap/matching/pair_evidence.hpp"
+
+namespace shapemap {
+namespace {
+
+/// A scan that is followed without a search moves so little from the one before.
+constexpr double kLongestStep_m = 0.20;
+constexpr double kLargestTurn_rad = 10 * kDegree;
+constexpr double kSure = 0.95;
+
+/// A sensor that stands does not tell how it moves.
+constexpr double kStands_m = 0.01;
+constexpr double kStands_rad = 0.5 * kDegree;
+
+/// A search at each scan pays only where scans follow each other closely.
+constexpr double kDense = 0.5;
+constexpr double kMemory = 0.97;
+
+}  // namespace
+
+void KeyframeTracker::start(std::shared_ptr<const ScanView> keyframe) {
+  keyframe_ = std::move(keyframe);
+  if (!keyframe_) {
+    forget_motion();
+    expectation_ = {};
+    attached_ = 0.0;
+  }
+  last_ = {};
+  attached_ *= kMemory;
+}
+
+std::optional<PoseHypothesis> KeyframeTracker::follow(const ScanView& view) {
+  expected_.reset();
+  if (!keyframe_ || options_.keyframes.step_m <= 0.0) return std::nullopt;
+  if (attached_ > kDense) expected_ = step_ ? expectation_.at(last_ * *step_) : ExpectedPose{last_};
+  std::optional<PoseHypothesis> pose = followed(view);
+  if (!pose && attached_ > kDense) pose = searched(view);
+  if (!pose) {
+    forget_motion();
+    return std::nullopt;
+  }
+  go_on_by(inverse(last_) * pose->ref_from_query);
+  if (!is_within(pose->ref_from_query, options_.keyframes.step_m, options_.keyframes.turn_rad)) return std::nullopt;
+  last_ = pose->ref_from_query;
+  attached_ = 1.0 - kMemory * (1.0 - attached_);
+  return pose;
+}
+
+/// After a jump, as where scans were lost, the motion may be any.
+void KeyframeTracker::go_on_by(const Pose2& step) {
+  if (!is_within(step, kLongestStep_m, kLargestTurn_rad)) return forget_motion();
+  if (step_ && !is_within(step, kStands_m, kStands_rad)) expectation_.learn(inverse(*step_) * step);
+  step_ = step;
+}
+
+/// From where the last scan was, and from where the motion goes on.
+std::optional<PoseHypothesis> KeyframeTracker::followed(const ScanView& view) const {
+  PoseHypothesis best = refined_hypothesis(*keyframe_, view, last_, options_.matcher.search);
+  if (step_) {
+    PoseHypothesis onward = refined_hypothesis(*keyframe_, view, last_ * *step_, options_.matcher.search);
+    if (onward.score > best.score) best = std::move(onward);
+  }
+  const Pose2 step = inverse(last_) * best.ref_from_query;
+  if (!can_stand_for(best) || !is_within(step, kLongestStep_m, kLargestTurn_rad)) return std::nullopt;
+  return best;
+}
+
+std::optional<PoseHypothesis> KeyframeTracker::searched(const ScanView& view) const {
+  const std::vector<PoseHypothesis> poses = pose_hypotheses(*keyframe_, view, options_.matcher.search);
+  if (poses.empty() || match_probability(poses.front(), lead_of_first(poses)) < kSure) return std::nullopt;
+  return poses.front();
+}
+
+}  // namespace shapemap

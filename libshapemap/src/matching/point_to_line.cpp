@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/matching/point_to_line.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace shapemap {
+namespace {
+
+/// Steps below these change nothing that matters.
+constexpr double kStill_m = 1e-3;
+constexpr double kStill_rad = 1e-3;
+
+/// Partners farther apart than this share of the gate count less and less.
+constexpr double kTrustedShareOfGate = 0.3;
+
+/// Fewer hold no pose.
+constexpr int kLeastPartners = 3;
+
+/// Normal equations of one iteration.
+struct LineSystem {
+  Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  double squares_m2 = 0.0;
+  double lever_squares_m2 = 0.0;
+  int partners = 0;
+};
+
+/// The nearest of points along a scan, for points along another. What was found last is near the nearest, so that the
+/// search knows from the start how far it needs to look.
+class Partners {
+ public:
+  Partners(const ScanView& reference, std::size_t num_points) : reference_(reference), last_(num_points, kNone) {}
+
+  /// Of point `i`, now at `p_m`.
+  PointIndex::Neighbour nearest(std::size_t i, const Point2& p_m, double gate_m) {
+    constexpr double kRounding = 1e-9;
+    double within_m = gate_m;
+    const std::size_t guess = last_[i] != kNone ? last_[i] : last_[i > 0 ? i - 1 : 0];
+    if (guess != kNone) {
+      const double distance_m = (reference_.points[guess].p_m - p_m).norm() * (1.0 + kRounding) + kRounding;
+      within_m = std::min(within_m, distance_m);
+    }
+    const PointIndex::Neighbour near = reference_.index.nearest(p_m, within_m);
+    if (near.distance_m <= gate_m) last_[i] = near.point;
+    return near;
+  }
+
+ private:
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  const ScanView& reference_;
+  std::vector<std::size_t> last_;  ///< per point: the one found last; for the first time, that of the point before
+};
+
+LineSystem line_system(Partners& partners, const ScanView& reference, const ScanView& query,
+                       const Pose2& ref_from_query, double gate_m, double cos_gate) {
+  LineSystem system;
+  const Turn turn(ref_from_query.theta_rad);
+  const double trusted_m = kTrustedShareOfGate * gate_m;
+  for (std::size_t i = 0; i < query.size(); ++i) {
+    const Point2 turned_m = turn * query.points[i].p_m;
+    const Point2 p_m = turned_m + ref_from_query.translation();
+    const PointIndex::Neighbour near = partners.nearest(i, p_m, gate_m);
+    if (!(near.distance_m <= gate_m)) continue;
+    const Point2& tangent = reference.directions[near.point];
+    if ((turn * query.directions[i]).dot(tangent) < cos_gate) continue;
+    const Point2 normal(-tangent.y(), tangent.x());
+    const double residual_m = normal.dot(p_m - reference.points[near.point].p_m);
+    const double ratio = residual_m / trusted_m;
+    const double weight = 1.0 / (1.0 + ratio * ratio);
+    const Eigen::Vector3d jacobian(normal.x(), normal.y(), normal.dot(Point2(-turned_m.y(), turned_m.x())));
+    system.a += weight * jacobian * jacobian.transpose();
+    system.b -= weight * residual_m * jacobian;
+    system.squares_m2 += residual_m * residual_m;
+    system.lever_squares_m2 += turned_m.squaredNorm();
+    ++system.partners;
+  }
+  return system;
+}
+
+void note_fit(const LineSystem& system, LineFit& fit) {
+  fit.information = system.a;
+  fit.partners = system.partners;
+  if (fit.partners < kLeastPartners) return;
+  fit.rms_m = std::sqrt(system.squares_m2 / fit.partners);
+  fit.lever_m = std::sqrt(system.lever_squares_m2 / fit.partners);
+}
+
+}  // namespace
+
+LineFit fit_to_lines(const ScanView& reference, const ScanView& query, const Pose2& start,
+                     const PointToLineOptions& options) {
+  LineFit fit;
+  fit.ref_from_query = start;
+  Partners partners(reference, query.size());
+  const double cos_gate = std::cos(options.tangent_gate_rad);
+  double gate_m = std::max(options.first_gate_m, options.last_gate_m);
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    const LineSystem system = line_system(partners, reference, query, fit.ref_from_query, gate_m, cos_gate);
+    note_fit(system, fit);
+    if (fit.partners < kLeastPartners) break;
+
+    const Eigen::Matrix3d held = options.stiffness * fit.partners * Eigen::Matrix3d::Identity();
+    const Eigen::Vector3d step = (system.a + held + 1e-6 * Eigen::Matrix3d::Identity()).ldlt().solve(system.b);
+    fit.ref_from_query.x_m += step.x();
+    fit.ref_from_query.y_m += step.y();
+    fit.ref_from_query.theta_rad = wrap_angle(fit.ref_from_query.theta_rad + step.z());
+    const bool still = step.head<2>().norm() < kStill_m && std::abs(step.z()) < kStill_rad;
+    if (still && gate_m <= options.last_gate_m) break;
+    gate_m = std::max(options.last_gate_m, (still ? 0.5 : 0.8) * gate_m);
+  }
+  return fit;
+}
+
+LineFit fit_at(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
+               const PointToLineOptions& options) {
+  LineFit fit;
+  fit.ref_from_query = ref_from_query;
+  Partners partners(reference, query.size());
+  const double cos_gate = std::cos(options.tangent_gate_rad);
+  note_fit(line_system(partners, reference, query, ref_from_query, options.last_gate_m, cos_gate), fit);
+  return fit;
+}
+
+}  // namespace shapemap

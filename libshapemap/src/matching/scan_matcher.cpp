@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/matching/scan_matcher.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace shapemap {
+namespace {
+
+std::string text_of(const char* before, double value, const char* after) {
+  std::ostringstream stream;
+  stream.precision(3);
+  stream << before << value << after;
+  return stream.str();
+}
+
+void give_verdict(Alignment& alignment, double agree, const ConfidenceOptions& options) {
+  const double deviation_m = worst_deviation_m(alignment.covariance);
+  if (agree < options.min_agree) {
+    alignment.status = AlignStatus::kTooLittleOverlap;
+    alignment.reason = text_of("only a share of ", agree, " of the points agrees with what the other scan saw");
+    alignment.ref_from_query = kNoPose;
+  } else if (alignment.probability < options.sure_probability) {
+    alignment.status = AlignStatus::kAmbiguous;
+    alignment.reason = text_of("the pose is right with a probability of ", alignment.probability, " only");
+  } else if (deviation_m > options.max_deviation_m) {
+    alignment.status = AlignStatus::kDegenerate;
+    alignment.reason = text_of("in one direction the position is known to ", deviation_m, " m only");
+  } else {
+    alignment.status = AlignStatus::kOk;
+  }
+}
+
+}  // namespace
+
+RankedPose ranked_pose(const PoseHypothesis& pose) {
+  constexpr double kNothing = 1e-9;
+  const Visibility& v = pose.visibility;
+  const double total = std::max(v.total(), kNothing);
+  RankedPose ranked;
+  ranked.ref_from_query = pose.ref_from_query;
+  ranked.score = pose.score;
+  ranked.agree = v.agree / total;
+  ranked.crossed = v.crossed / total;
+  ranked.hidden = v.hidden / total;
+  ranked.unclear = v.unclear / total;
+  ranked.outside = v.outside / total;
+  ranked.cross_agree = v.cross_agree / std::max(v.cross_total, kNothing);
+  ranked.rms_m = pose.fit.rms_m;
+  ranked.partners = pose.fit.partners;
+  return ranked;
+}
+
+Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chosen, double margin,
+                 const ConfidenceOptions& options, std::optional<double> probability) {
+  Alignment alignment;
+  if (hypotheses.empty()) {
+    alignment.status = AlignStatus::kNoCorrespondences;
+    alignment.reason = "no pose brings similar surfaces together";
+    return alignment;
+  }
+  const PoseHypothesis& best = hypotheses.at(chosen);
+  alignment.ref_from_query = best.ref_from_query;
+  alignment.probability = probability ? *probability : match_probability(best, margin);
+  alignment.covariance = pose_covariance(best.fit);
+  alignment.ranked.push_back(ranked_pose(best));
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
+    if (i != chosen) alignment.ranked.push_back(ranked_pose(hypotheses[i]));
+  }
+  // Those that scans further back have lent stand behind the others.
+  std::stable_sort(alignment.ranked.begin() + 1, alignment.ranked.end(),
+                   [](const RankedPose& a, const RankedPose& b) { return a.score > b.score; });
+  alignment.overlap_ratio = alignment.ranked.front().agree;
+  give_verdict(alignment, alignment.overlap_ratio, options);
+  return alignment;
+}
+
+Alignment robust_align(const ScanView& reference, const ScanView& query, const MatcherOptions& options) {
+  const std::vector<PoseHypothesis> poses = pose_hypotheses(reference, query, options.search);
+  return judged(poses, 0, lead_of_first(poses), options.confidence);
+}
+
+}  // namespace shapemap

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "deskew/sweep_unbending.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "support/bent_sweeps.hpp"
+
+namespace shapemap {
+namespace {
+
+using test::RollingLaser;
+
+constexpr double kRounding_m = 1e-5;  // of ranges as floats
+
+/// By the exact motion.
+void unbend(Log& log, const test::Motion& world_from_laser, const RollingLaser& laser) {
+  for (Position& position : log.positions) {
+    const double start_s = position.timestamp_s;
+    for (SubScan& scan : position.sub_scans) {
+      scan = unbent(scan, {}, [&](std::size_t beam) {
+        return inverse(world_from_laser(start_s)) *
+               world_from_laser(start_s + static_cast<double>(beam) * laser.beam_step_s());
+      });
+    }
+  }
+}
+
+TEST(Unbent, ByTheExactMotionEveryHitIsOnItsWall) {
+  const test::World world = test::cluttered_room(5);
+  const test::Motion motion = test::swinging(40 * kDegree, 0.8);
+  for (const bool clockwise : {false, true}) {
+    RollingLaser laser;
+    laser.clockwise = clockwise;
+    Log log = test::bent_log(world, motion, 9, laser);
+    EXPECT_GT(test::off_the_walls_m(log, world), 0.05);
+    unbend(log, motion, laser);
+    EXPECT_LT(test::off_the_walls_m(log, world), kRounding_m) << clockwise;
+  }
+}
+
+TEST(Unbent, AMountedAndUpsideDownLaserSeesTheSame) {
+  const test::World world = test::cluttered_room(5);
+  const test::Motion robot = test::swinging(40 * kDegree, 0.8);
+  const Pose2 robot_from_sensor{0.3, -0.2, 1.1};
+  const RollingLaser laser;
+  Log log = test::bent_log(
+      world, [&](double time_s) { return robot(time_s) * robot_from_sensor; }, 6, laser);
+  for (Position& position : log.positions) {
+    SubScan& scan = position.sub_scans[0];
+    // What runs counterclockwise above runs clockwise for a laser that hangs from the ceiling.
+    scan.first_angle_rad = -scan.first_angle_rad;
+    scan.angle_step_rad = -scan.angle_step_rad;
+    scan.robot_from_sensor = {0.3, -0.2, 0.0, 1.1, 0.0, kPi};
+    position.reference_pose = robot(position.timestamp_s);
+  }
+  EXPECT_GT(test::off_the_walls_m(log, world), 0.05);
+  unbend(log, robot, laser);
+  EXPECT_LT(test::off_the_walls_m(log, world), kRounding_m);
+}
+
+TEST(Unbent, WhatGoesRoundMoreThanOnceIsSeenOnce) {
+  const test::World world = test::uneven_room();
+  RollingLaser laser;
+  const double turn_rad = 50 * kDegree;
+  const auto turning = [&](double sign) {
+    return [=](double time_s) { return Pose2{0.0, 0.0, sign * turn_rad * time_s / 0.1}; };
+  };
+  Log more = test::bent_log(world, turning(1.0), 1, laser);
+  unbend(more, turning(1.0), laser);
+  const SubScan& scan = more.positions[0].sub_scans[0];
+  const double expected = laser.num_beams * 360.0 / 410.0;
+  EXPECT_NEAR(static_cast<double>(scan.ranges_m.size()), expected, 2.0);
+  EXPECT_LE(scan.beam_angles_rad.back() - scan.beam_angles_rad.front(), 2 * kPi);
+  Log less = test::bent_log(world, turning(-1.0), 1, laser);
+  unbend(less, turning(-1.0), laser);
+  EXPECT_EQ(less.positions[0].sub_scans[0].ranges_m.size(), static_cast<std::size_t>(laser.num_beams));
+}
+
+TEST(Unbent, BeamsAreSortedAndThoseWithoutReturnTurned) {
+  SubScan scan;
+  scan.first_angle_rad = -0.2;
+  scan.angle_step_rad = 0.1;
+  scan.max_range_m = 10.0;
+  scan.ranges_m = {0.5F, std::numeric_limits<float>::quiet_NaN(), 10.0F, 3.0F};
+  scan.intensities = {1.0F, 2.0F, 3.0F, 4.0F};
+  // Sideways by a metre at the first beam: what is near there is seen in quite another direction.
+  const SubScan straight = unbent(scan, {}, [](std::size_t beam) {
+    return beam == 0 ? Pose2{0.0, 1.0, 0.0} : Pose2{0.0, 0.0, 0.01 * static_cast<double>(beam)};
+  });
+  ASSERT_EQ(straight.ranges_m.size(), 4U);
+  EXPECT_TRUE(std::is_sorted(straight.beam_angles_rad.begin(), straight.beam_angles_rad.end()));
+  EXPECT_EQ(straight.intensities, (std::vector<float>{2.0F, 3.0F, 4.0F, 1.0F}));
+  EXPECT_TRUE(std::isnan(straight.ranges_m[0]));
+  EXPECT_NEAR(straight.beam_angles_rad[0], -0.1 + 0.01, 1e-12);
+  EXPECT_FLOAT_EQ(straight.ranges_m[1], 10.0F);
+  EXPECT_NEAR(straight.beam_angles_rad[1], 0.02, 1e-12);
+  EXPECT_NEAR(straight.ranges_m[3], std::hypot(0.5 * std::cos(0.2), 1.0 - 0.5 * std::sin(0.2)), 1e-6);
+}
+
+TEST(MostBent, IsHowFarAHitMoves) {
+  SubScan scan;
+  scan.angle_step_rad = 0.1;
+  scan.max_range_m = 10.0;
+  scan.ranges_m = {2.0F, 4.0F, 10.0F};
+  const auto turned = [](std::size_t beam) { return Pose2{0.0, 0.0, 0.01 * static_cast<double>(beam)}; };
+  EXPECT_NEAR(most_bent_m(scan, {}, turned), 0.04, 1e-5);
+  EXPECT_EQ(most_bent_m(scan, {}, [](std::size_t) { return Pose2{}; }), 0.0);
+}
+
+}  // namespace
+}  // namespace shapemap

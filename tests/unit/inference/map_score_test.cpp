@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/inference/map_score.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <random>
+
+#include "support/ring_walk.hpp"
+
+namespace shapemap {
+namespace {
+
+using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
+
+Pairs by_all_pairs(const std::vector<Pose2>& poses, double within_m) {
+  Pairs pairs;
+  for (std::size_t b = 0; b < poses.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      if (std::hypot(poses[a].x_m - poses[b].x_m, poses[a].y_m - poses[b].y_m) < within_m) pairs.emplace_back(a, b);
+    }
+  }
+  return pairs;
+}
+
+TEST(NearPairs, AreThoseOfAllPairsThatAreNear) {
+  std::mt19937 rng(1);
+  for (int round = 0; round < 40; ++round) {
+    const double reach_m = 2.0 + 3.0 * round;
+    std::vector<Pose2> poses;
+    for (int i = 0; i < 120; ++i) poses.push_back(test::random_pose(rng, reach_m, kPi));
+    for (const double within_m : {0.7, 5.0, 1000.0}) {
+      EXPECT_EQ(near_pairs(poses, within_m), by_all_pairs(poses, within_m)) << round << " " << within_m;
+    }
+  }
+}
+
+TEST(NearPairs, OnTheBordersOfCellsAreNotLost) {
+  std::vector<Pose2> poses;
+  for (int x = -3; x <= 3; ++x) {
+    for (int y = -3; y <= 3; ++y) poses.push_back({2.0 * x, 2.0 * y, 0.0});
+  }
+  EXPECT_TRUE(near_pairs(poses, 2.0).empty()) << "nearer than, and not as near as";
+  EXPECT_EQ(near_pairs(poses, 2.001), by_all_pairs(poses, 2.001));
+  EXPECT_EQ(near_pairs(poses, 2.001).size(), 2U * 6U * 7U);
+  EXPECT_TRUE(near_pairs({}, 1.0).empty());
+}
+
+TEST(MapEvidence, OfAPairGrowsWithWhatAgreesAndFallsWithWhatIsCrossed) {
+  const auto of = [](double agree, double crossed) {
+    Visibility seen;
+    seen.agree = agree;
+    seen.crossed = crossed;
+    seen.hidden = 1.0 - agree - crossed;
+    return MapEvidence::of_pair(seen);
+  };
+  EXPECT_EQ(MapEvidence::of_pair({}), 0.0);
+  EXPECT_NEAR(of(0.0, 0.0), 0.0, 1e-12) << "neither sees what the other does";
+  EXPECT_GT(of(0.3, 0.0), 0.0);
+  EXPECT_LT(of(0.0, 0.3), 0.0);
+  for (double share = 0.0; share < 0.4; share += 0.1) {
+    EXPECT_GT(of(share + 0.1, 0.2), of(share, 0.2));
+    EXPECT_LT(of(0.2, share + 0.1), of(0.2, share));
+  }
+}
+
+/// Once round, and a few steps more.
+struct Ring {
+  std::vector<Pose2> truth = test::ring_walk(test::kRingLap + 8, 2);
+  test::Views views = test::views_along(test::ring_world(1), truth);
+  MapEvidence evidence{views, {}, 1};
+};
+
+TEST(MapEvidence, IsBestForTheTruthAndWorseTheMoreTheMapIsBent) {
+  Ring ring;
+  double before = ring.evidence.of(ring.truth);
+  EXPECT_GT(before, 0.0);
+  for (const double drift_deg : {0.4, 1.2}) {
+    const std::vector<Pose2> bent = test::chained(test::drifting_links(ring.truth, drift_deg * kDegree));
+    const double value = ring.evidence.of(bent);
+    EXPECT_LT(value, before - 10.0) << drift_deg;
+    before = value;
+  }
+}
+
+/// Two laps of a chain that is bent: where a loop should hold the second to the first, and where none does.
+TEST(MapEvidence, OfWhatOnlyALongChainHoldsCountsLittle) {
+  const std::vector<Pose2> truth = test::ring_walk(2 * test::kRingLap, 2);
+  const test::Views views = test::views_along(test::ring_world(1), truth);
+  const std::vector<Pose2> bent = test::chained(test::drifting_links(truth, 1.2 * kDegree));
+  ASSERT_GT(truth.size(), 45U) << "some pairs are far along the chain";
+  std::vector<std::size_t> one_each(truth.size());
+  std::iota(one_each.begin(), one_each.end(), std::size_t{0});
+  MapEvidence evidence(views, {}, 1);
+  const std::vector<std::size_t> one_ring(truth.size(), 0);
+  EXPECT_EQ(evidence.of(bent, one_ring), evidence.of(bent));
+  EXPECT_GT(evidence.of(bent, one_each), evidence.of(bent) + 1.0);
+  EXPECT_LE(evidence.of(truth, one_each), evidence.of(truth));
+}
+
+TEST(MapEvidence, TellsAgainstTwoPlacesOnTopOfEachOther) {
+  std::mt19937 rng(2);
+  std::vector<Pose2> poses;
+  test::Views views;
+  for (unsigned place = 1; place <= 2; ++place) {
+    const test::World world = test::strange_place(place);
+    for (unsigned k = 0; k < 6; ++k) {
+      poses.push_back(test::random_pose(rng, 0.5, kPi));
+      views.push_back(std::make_shared<ScanView>(test::view_from(world, poses.back(), test::full_circle(), k)));
+    }
+  }
+  std::vector<Pose2> apart = poses;
+  for (std::size_t n = 6; n < 12; ++n) apart[n].x_m += 1000.0;
+  MapEvidence evidence(views, {}, 1);
+  EXPECT_GT(evidence.of(apart), evidence.of(poses) + 10.0);
+}
+
+TEST(MapEvidence, IsNoneWhereNoTwoStretchesMeet) {
+  std::vector<Pose2> straight;
+  for (int k = 0; k < 6; ++k) straight.push_back({7.0 * k, 0.0, 0.0});
+  MapEvidence evidence(test::views_along(test::ring_world(1), test::ring_walk(6, 1)), {}, 1);
+  EXPECT_EQ(evidence.of(straight), 0.0);
+  EXPECT_EQ(MapEvidence({}, {}, 1).of({}), 0.0);
+}
+
+/// Where all are: not how the map lies.
+TEST(MapEvidence, DoesNotDependOnTheFrameOfTheMap) {
+  Ring ring;
+  std::vector<Pose2> elsewhere = ring.truth;
+  for (Pose2& pose : elsewhere) pose = Pose2{3.0, -40.0, 2.0} * pose;
+  const double value = MapEvidence(ring.views, {}, 1).of(ring.truth);
+  EXPECT_NEAR(MapEvidence(ring.views, {}, 1).of(elsewhere), value, 1e-3 * value);
+}
+
+TEST(MapEvidence, ThatRemembersGivesWhatAFreshOneGives) {
+  Ring ring;
+  const std::vector<Pose2> bent = test::chained(test::drifting_links(ring.truth, 1.0 * kDegree), ring.truth[0]);
+  const auto fresh = [&](const std::vector<Pose2>& poses) { return MapEvidence(ring.views, {}, 1).of(poses); };
+  const double of_truth = ring.evidence.of(ring.truth);
+  const double of_bent = ring.evidence.of(bent);
+  EXPECT_EQ(of_truth, fresh(ring.truth));
+  EXPECT_NEAR(of_bent, fresh(bent), 0.05 * std::abs(of_truth - of_bent));
+  EXPECT_NEAR(ring.evidence.of(ring.truth), of_truth, 0.05 * std::abs(of_truth - of_bent));
+}
+
+/// Going round again and again tells less and less: else the more places are laid on each other, the better.
+TEST(MapEvidence, GrowsByNoMoreThanOneForEachNodeHoweverOftenItsPlaceIsPassed) {
+  double before = 0.0;
+  for (const std::size_t laps : {1U, 2U, 4U}) {
+    const std::vector<Pose2> truth = test::ring_walk(laps * test::kRingLap, 2);
+    const double now = MapEvidence(test::views_along(test::ring_world(1), truth), {}, 1).of(truth);
+    if (laps > 1) {
+      const double of_stretches = now - static_cast<double>(laps) * before;
+      EXPECT_GT(of_stretches, 0.0) << laps;
+      EXPECT_LT(of_stretches, 1.2 * static_cast<double>(truth.size())) << laps;
+    } else {
+      before = now;
+    }
+  }
+}
+
+/// Many small steps are a large one: what is remembered must not creep along.
+TEST(MapEvidence, ThatRemembersDoesNotFallBehind) {
+  Ring ring;
+  std::vector<Pose2> creeping = ring.truth;
+  const double at_first = ring.evidence.of(creeping);
+  for (int step = 0; step < 60; ++step) {
+    for (std::size_t n = test::kRingLap; n < creeping.size(); ++n) creeping[n].y_m += 0.01;
+    ring.evidence.of(creeping);
+  }
+  const double at_last = ring.evidence.of(creeping);
+  EXPECT_LT(at_last, at_first - 20.0);
+  EXPECT_NEAR(at_last, MapEvidence(ring.views, {}, 1).of(creeping), 0.1 * (at_first - at_last));
+}
+
+TEST(MapEvidence, IsTheSameToTheBitForAnyNumberOfThreads) {
+  Ring ring;
+  EXPECT_EQ(MapEvidence(ring.views, {}, 3).of(ring.truth), ring.evidence.of(ring.truth));
+}
+
+/// Two pieces of a map, each moved to a frame of its own, and what they say of each other.
+struct TwoPieces {
+  TwoPieces(const std::vector<Pose2>& truth, const std::vector<std::size_t>& of_f, std::vector<std::size_t> of_g)
+      : f(of_f), g(std::move(of_g)), pose(truth) {
+    for (const std::size_t n : g) pose[n] = inverse(f_from_g) * pose[n];
+  }
+
+  double between(MapEvidence& evidence, const Pose2& moved = {}) const {
+    return evidence.between(pose, f, g, moved * f_from_g);
+  }
+
+  /// How much a map is worth in which the pieces lie so, more than one in which they are far from each other.
+  double by_whole_maps(const test::Views& views, const Pose2& moved = {}) const {
+    std::vector<Pose2> together = pose;
+    std::vector<Pose2> apart = pose;
+    for (const std::size_t n : g) together[n] = moved * f_from_g * pose[n];
+    for (const std::size_t n : g) apart[n].x_m += 1000.0;
+    for (std::size_t n = 0; n < pose.size(); ++n) {  // what belongs to neither is far from both
+      if (std::count(f.begin(), f.end(), n) + std::count(g.begin(), g.end(), n) > 0) continue;
+      together[n] = apart[n] = {0.0, 1e4 * static_cast<double>(n + 1), 0.0};
+    }
+    return MapEvidence(views, {}, 1).of(together) - MapEvidence(views, {}, 1).of(apart);
+  }
+
+  Pose2 f_from_g{3.0, -40.0, 2.0};
+  std::vector<std::size_t> f;
+  std::vector<std::size_t> g;
+  std::vector<Pose2> pose;
+};
+
+/// Nodes `first` to `last`, without it, that `wanted` wants.
+template <class Wanted>
+std::vector<std::size_t> nodes(std::size_t first, std::size_t last, Wanted wanted) {
+  std::vector<std::size_t> chosen;
+  for (std::size_t n = first; n < last; ++n) {
+    if (wanted(n)) chosen.push_back(n);
+  }
+  return chosen;
+}
+const auto kAll = [](std::size_t) { return true; };
+
+/// Pieces so short that no node gains by others of its own piece.
+TEST(MapEvidenceBetween, IsWhatAWholeMapGainsByThePairsOfBothPieces) {
+  Ring ring;
+  const auto even_threes = [](std::size_t n) { return n / 3 % 2 == 0; };
+  const auto odd_threes = [](std::size_t n) { return n / 3 % 2 == 1; };
+  const std::vector<TwoPieces> cases{{ring.truth, nodes(0, 8, kAll), nodes(46, 54, kAll)},
+                                     {ring.truth, nodes(46, 54, kAll), nodes(0, 8, kAll)},
+                                     {ring.truth, nodes(0, 8, even_threes), nodes(0, 8, odd_threes)},
+                                     {ring.truth, nodes(20, 21, kAll), nodes(22, 30, kAll)}};
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    const double right = cases[k].by_whole_maps(ring.views);
+    EXPECT_GT(right, 2.0) << k;
+    EXPECT_NEAR(cases[k].between(ring.evidence), right, 1e-3 * right) << k;
+    std::mt19937 rng(5);
+    for (int round = 0; round < 4; ++round) {
+      const Pose2 moved = test::random_pose(rng, 2.0, 0.5);
+      const double expected = cases[k].by_whole_maps(ring.views, moved);
+      MapEvidence fresh(ring.views, {}, 1);
+      EXPECT_NEAR(cases[k].between(fresh, moved), expected, 1e-3 * std::abs(expected) + 1e-3) << k;
+    }
+  }
+}
+
+TEST(MapEvidenceBetween, DoesNotDependOnWhichPieceComesFirst) {
+  Ring ring;
+  const TwoPieces pieces(ring.truth, nodes(0, 12, kAll), nodes(46, 58, kAll));
+  const double one = pieces.between(ring.evidence);
+  const double other =
+      MapEvidence(ring.views, {}, 1).between(pieces.pose, pieces.g, pieces.f, inverse(pieces.f_from_g));
+  EXPECT_NEAR(one, other, 1e-3 * one);
+}
+
+/// Of all pairs, each asked by itself. What a pair that tells for the map is worth is found from what is left of it
+/// when both nodes gain half of it, at most 1 each.
+double by_each_pair(const TwoPieces& pieces, const test::Views& views, const Pose2& moved) {
+  MapEvidence evidence(views, {}, 1);
+  double sum = 0.0;
+  std::map<std::size_t, double> gained;
+  for (const std::size_t i : pieces.f) {
+    for (const std::size_t j : pieces.g) {
+      const double left = evidence.between(pieces.pose, {i}, {j}, moved * pieces.f_from_g);
+      const bool is_of_one_stretch = std::max(i, j) - std::min(i, j) < 8;
+      if (left < 0.0 || is_of_one_stretch) {
+        sum += left;
+        continue;
+      }
+      const double half = -std::log(1.0 - 0.5 * left);
+      gained[i] += half;
+      gained[j] += half;
+    }
+  }
+  for (const auto& [unused, gain] : gained) sum += 1.0 - std::exp(-gain);
+  return sum;
+}
+
+/// A walk so long that only a part of the pairs is asked.
+TEST(MapEvidenceBetween, OfManyPairsIsEstimatedWell) {
+  const std::vector<Pose2> truth = test::ring_walk(160, 2);
+  const test::Views views = test::views_along(test::ring_world(1), truth);
+  const TwoPieces pieces(truth, nodes(0, 100, kAll), nodes(100, 160, kAll));
+  for (const Pose2& moved : {Pose2{}, Pose2{1.0, -1.0, 0.2}}) {
+    MapEvidence evidence(views, {}, 1);
+    const double expected = by_each_pair(pieces, views, moved);
+    EXPECT_NEAR(pieces.between(evidence, moved), expected, 0.15 * std::abs(expected));
+    MapEvidence by_three(views, {}, 3);
+    EXPECT_EQ(pieces.between(by_three, moved), pieces.between(evidence, moved)) << "to the bit";
+  }
+}
+
+TEST(MapEvidenceBetween, IsNoneOfPiecesThatDoNotMeet) {
+  Ring ring;
+  const TwoPieces pieces(ring.truth, nodes(0, 12, kAll), nodes(46, 58, kAll));
+  EXPECT_EQ(pieces.between(ring.evidence, {100.0, 0.0, 0.0}), 0.0);
+  EXPECT_EQ(ring.evidence.between(ring.truth, {}, {1, 2}, {}), 0.0);
+  EXPECT_EQ(ring.evidence.between(ring.truth, {3}, {4}, {}), 0.0) << "neighbours tell nothing new";
+}
+
+}  // namespace
+}  // namespace shapemap

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "inference/optimized_map.hpp"
+
+#include <gmock/gmock.h>
+
+#include "shapemap/inference/map_search.hpp"
+#include "support/ring_walk.hpp"
+
+namespace shapemap {
+namespace {
+
+using ::testing::Each;
+using ::testing::ElementsAre;
+
+/// A chain of three, each of whose links is most likely wrong.
+struct ImprobableChain {
+  ImprobableChain() {
+    for (const auto& view : test::views_along(test::ring_world(1), test::ring_walk(3, 2, 4.0))) {
+      chain.keyframes.push_back({chain.keyframes.size(), 0, view, {}, {}});
+    }
+    chain.links.resize(2);
+    for (KeyframeLink& link : chain.links) {
+      link.hypotheses = {hypothesis_at(*chain.keyframes[0].view, *chain.keyframes[1].view, {3.0, 1.0, 1.0}, {})};
+      link.choice = {0, 0.0, {0.0}};
+    }
+  }
+
+  std::vector<int> choices(Improbable improbable) const {
+    RunObserver nobody;
+    return map_with_loops(chain, {}, improbable, options, {1, nobody}).link_choice;
+  }
+
+  KeyframeChain chain;
+  RobustOptions options;
+};
+
+TEST(KeyframeMap, ImprobableLinksOfTheBareChainAreCut) {
+  const ImprobableChain walk;
+  ASSERT_LT(stated_probability(walk.chain.links[0]), walk.options.front_end.split_below);
+  const KeyframeMap map = map_of_chain(walk.chain, walk.options);
+  EXPECT_THAT(map.link_choice, Each(kCut));
+  EXPECT_THAT(map.component, ElementsAre(0, 1, 2));
+}
+
+TEST(KeyframeMap, UnlessTheLimitIsLower) {
+  ImprobableChain walk;
+  walk.options.front_end.split_below = 0.0;
+  EXPECT_THAT(map_of_chain(walk.chain, walk.options).link_choice, Each(0));
+}
+
+TEST(KeyframeMap, WhereAllScansWillJudgeThemTheyStay) {
+  const ImprobableChain walk;
+  EXPECT_THAT(walk.choices(Improbable::kIsCut), Each(kCut));
+  EXPECT_THAT(walk.choices(Improbable::kStays), Each(0));
+}
+
+}  // namespace
+}  // namespace shapemap

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/loops/perceptual_aliasing.hpp"
+
+#include <gmock/gmock.h>
+
+#include <stdexcept>
+
+#include "support/ring_walk.hpp"
+
+namespace shapemap {
+namespace {
+
+/// Along a line, a metre apart, with links that are all sure.
+struct Walk {
+  Walk() {
+    for (std::size_t n = 0; n < 60; ++n) map.push_back({static_cast<double>(n), 0.0, 0.0});
+    links = test::drifting_links(map, 0.0);
+    for (ChainLink& link : links) link.probability = 0.99;
+  }
+
+  LoopHypothesis loop(std::size_t a, std::size_t b, const Pose2& a_from_b, double log_odds) const {
+    return {a, b, a_from_b, test::covariance_of(0.05, 1 * kDegree), log_odds};
+  }
+  /// As the chain has it.
+  LoopHypothesis right(std::size_t a, std::size_t b, double log_odds) const {
+    return loop(a, b, inverse(map[a]) * map[b], log_odds);
+  }
+  std::vector<LoopHypothesis> of(const std::vector<LoopHypothesis>& hypotheses) const {
+    return without_look_alikes(hypotheses, links, map);
+  }
+
+  std::vector<Pose2> map;
+  std::vector<ChainLink> links;
+};
+
+TEST(LookAlikes, WhereNothingIsContradictedAllIsKept) {
+  const Walk walk;
+  const std::vector<LoopHypothesis> kept = walk.of({walk.right(3, 15, 4.0), walk.loop(2, 55, {}, 1.0)});
+  ASSERT_EQ(kept.size(), 2U);
+  EXPECT_EQ(kept[0].log_odds, 4.0);
+  EXPECT_EQ(kept[1].log_odds, 1.0) << "the chain is not sure of what is so far apart";
+}
+
+TEST(LookAlikes, WhatTheChainContradictsIsLeftOutAndCountsAgainstTheOthersThere) {
+  const Walk walk;
+  const std::vector<LoopHypothesis> kept =
+      walk.of({walk.loop(10, 22, {0.1, 0.0, 0.0}, 3.0), walk.loop(3, 52, {}, 6.0), walk.loop(8, 58, {}, 6.0),
+               walk.loop(4, 24, {20.0, 0.0, 0.0}, 2.0)});
+  ASSERT_EQ(kept.size(), 3U);
+  EXPECT_EQ(kept[0].log_odds, 6.0) << "far from both";
+  EXPECT_NEAR(kept[1].log_odds, 1.0, 1e-12) << "two nodes from the one";
+  EXPECT_NEAR(kept[2].log_odds, -3.0, 1e-12) << "two nodes from the other, though the chain agrees";
+}
+
+TEST(LookAlikes, ATurnIsContradictedAsWell) {
+  const Walk walk;
+  EXPECT_TRUE(walk.of({walk.loop(10, 20, {10.0, 0.0, 180 * kDegree}, 3.0)}).empty());
+  EXPECT_EQ(walk.of({walk.loop(10, 20, {10.0, 0.0, 20 * kDegree}, 3.0)}).size(), 1U);
+}
+
+TEST(LookAlikes, ADoubtfulLinkOrOneThatSlidesContradictsNothing) {
+  const LoopHypothesis off = Walk().loop(10, 22, {}, 3.0);
+  Walk doubtful;
+  doubtful.links[15].probability = 0.9;
+  EXPECT_EQ(doubtful.of({off}).size(), 1U);
+  Walk sliding;
+  sliding.links[15].alternatives.front().covariance(0, 0) = 9.0;
+  EXPECT_EQ(sliding.of({off}).size(), 1U);
+  Walk gap;
+  gap.links[15] = {};
+  EXPECT_EQ(gap.of({off}).size(), 1U);
+}
+
+TEST(LookAlikes, NeedsAMapOfTheChain) {
+  Walk walk;
+  walk.map.pop_back();
+  EXPECT_THROW(walk.of({}), std::invalid_argument);
+  EXPECT_TRUE(without_look_alikes({}, {}, {}).empty());
+}
+
+}  // namespace
+}  // namespace shapemap

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole of the robust method on made-up worlds: loops, several logs, interruptions.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "shapemap/mapper/map_log.hpp"
+#include "support/matchers.hpp"
+#include "support/patience.hpp"
+#include "support/ring_laps.hpp"
+
+namespace shapemap {
+namespace {
+
+using test::HasSameBits;
+using ::testing::ElementsAre;
+
+/// A coarser search than by default.
+MappingOptions quick() {
+  MappingOptions options = test::quick_mapping();
+  options.robust.loop_detection.likely_places = 4;
+  return options;
+}
+
+MapResult mapped(const Log& log, const MappingOptions& options = quick()) {
+  RunObserver nobody;
+  return map_log(log, options, nobody);
+}
+
+void add_walk(Log& log, const test::World& world, const std::vector<Pose2>& poses, unsigned seed = 7) {
+  std::mt19937 rng(seed);
+  if (!log.positions.empty()) log.starts.push_back(log.positions.size());
+  for (const Pose2& pose : poses) log.positions.push_back(test::scan_of(world, pose, test::full_circle(), rng));
+}
+
+std::vector<Pose2> poses_of(const Fragment& fragment) {
+  std::vector<Pose2> poses;
+  for (const PlacedPosition& placed : fragment.positions) poses.push_back(placed.map_from_robot);
+  return poses;
+}
+
+std::vector<std::size_t> sizes_of(const MapResult& result) {
+  std::vector<std::size_t> sizes;
+  for (const Fragment& fragment : result.fragments) sizes.push_back(fragment.positions.size());
+  return sizes;
+}
+
+/// Each position that was looked at is in one fragment, and all of it can be trusted to be there.
+void expect_whole(const MapResult& result, const Log& log) {
+  ASSERT_LE(result.positions.size(), log.positions.size());
+  std::map<std::size_t, int> fragment_of;
+  for (std::size_t f = 0; f < result.fragments.size(); ++f) {
+    ASSERT_FALSE(result.fragments[f].positions.empty());
+    EXPECT_THAT(result.fragments[f].positions[0].map_from_robot, test::IsNearPose(Pose2{}, 1e-12, 1e-12));
+    for (const PlacedPosition& placed : result.fragments[f].positions) {
+      EXPECT_TRUE(fragment_of.emplace(placed.position_index, static_cast<int>(f)).second) << "placed twice";
+      const Pose2& pose = placed.map_from_robot;
+      EXPECT_TRUE(std::isfinite(pose.x_m + pose.y_m + pose.theta_rad));
+      EXPECT_EQ(placed.robot_from_sub_scan.size(), log.positions[placed.position_index].sub_scans.size());
+    }
+  }
+  for (std::size_t i = 0; i < result.positions.size(); ++i) {
+    EXPECT_EQ(result.positions[i].position_index, i);
+    ASSERT_EQ(fragment_of.count(i), 1U) << "all of these scans have shape";
+    EXPECT_EQ(result.positions[i].fragment, fragment_of[i]);
+  }
+  EXPECT_EQ(fragment_of.size(), result.positions.size());
+  for (const ClosedLoop& loop : result.loops) {
+    EXPECT_LT(loop.a, loop.b);
+    EXPECT_LT(loop.b, result.positions.size());
+  }
+}
+
+void expect_same_bits(const MapResult& a, const MapResult& b) {
+  ASSERT_EQ(sizes_of(a), sizes_of(b));
+  for (std::size_t f = 0; f < a.fragments.size(); ++f) {
+    for (std::size_t i = 0; i < a.fragments[f].positions.size(); ++i) {
+      const PlacedPosition& one = a.fragments[f].positions[i];
+      const PlacedPosition& other = b.fragments[f].positions[i];
+      EXPECT_EQ(one.position_index, other.position_index);
+      EXPECT_THAT(one.map_from_robot, HasSameBits(other.map_from_robot));
+    }
+  }
+  ASSERT_EQ(a.loops.size(), b.loops.size());
+  for (std::size_t k = 0; k < a.loops.size(); ++k) EXPECT_EQ(a.loops[k].strength, b.loops[k].strength);
+}
+
+/// Once round the ring, and a few steps more.
+struct Ring {
+  Ring() { add_walk(log, test::ring_world(1), truth); }
+  std::vector<Pose2> truth = test::ring_walk(test::kRingLap + 6, 2);
+  Log log;
+};
+
+TEST(RobustMap, KnowsARingAgainWhenItHasComeRound) {
+  const Ring ring;
+  const MapResult result = mapped(ring.log);
+  expect_whole(result, ring.log);
+  ASSERT_THAT(sizes_of(result), ElementsAre(ring.truth.size()));
+  EXPECT_LT(test::worst_off_m(poses_of(result.fragments[0]), ring.truth), 0.15);
+  const auto closes = [](const ClosedLoop& loop) { return loop.a < 10 && loop.b > test::kRingLap - 5; };
+  EXPECT_TRUE(std::any_of(result.loops.begin(), result.loops.end(), closes));
+  for (const ClosedLoop& loop : result.loops) {
+    const Pose2 a_from_b = inverse(ring.truth[loop.a]) * ring.truth[loop.b];
+    EXPECT_THAT(loop.a_from_b, test::IsNearPose(a_from_b, 0.20, 3 * kDegree)) << loop.a << " " << loop.b;
+  }
+  EXPECT_TRUE(result.positions[25].held_by_loops);
+  EXPECT_GT(result.times.loops_s, 0.0);
+}
+
+TEST(RobustMap, WithoutLoopsIsTheChainAsItIs) {
+  const Ring ring;
+  MappingOptions options = quick();
+  options.robust.loops.close_loops = false;
+  const MapResult result = mapped(ring.log, options);
+  expect_whole(result, ring.log);
+  EXPECT_TRUE(result.loops.empty());
+  const std::vector<Pose2> poses = poses_of(result.fragments.at(0));
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const Pose2 chained = poses[i - 1] * result.positions[i].alignment.ref_from_query;
+    EXPECT_THAT(poses[i], test::IsNearPose(chained, 1e-9, 1e-9));
+    EXPECT_FALSE(result.positions[i].held_by_loops);
+  }
+}
+
+struct TwoLogs {
+  explicit TwoLogs(const test::World& other_world) {
+    add_walk(log, test::ring_world(1), first);
+    add_walk(log, other_world, second, 9);
+  }
+  std::vector<Pose2> first = test::ring_walk(14, 5);
+  std::vector<Pose2> second = test::ring_walk(11, 6, 2.0);
+  Log log;
+};
+
+TEST(RobustMap, OfTwoLogsOfOnePlaceIsOneMap) {
+  const TwoLogs two(test::ring_world(1));
+  const MapResult result = mapped(two.log);
+  expect_whole(result, two.log);
+  ASSERT_THAT(sizes_of(result), ElementsAre(two.first.size() + two.second.size()));
+  std::vector<Pose2> truth = two.first;
+  truth.insert(truth.end(), two.second.begin(), two.second.end());
+  EXPECT_LT(test::worst_off_m(poses_of(result.fragments[0]), truth), 0.15);
+  EXPECT_FALSE(result.loops.empty());
+  EXPECT_FALSE(result.positions[two.first.size()].starts_fragment);
+}
+
+TEST(RobustMap, OfTwoLogsOfDifferentPlacesIsOneMapEach) {
+  test::World other;  // a hall with pillars
+  test::add_box(other, {}, 9.0, 7.0);
+  for (int k = 0; k < 9; ++k) test::add_box(other, {-6.0 + 1.4 * k, k % 3 - 1.0, 0.3 * k}, 0.2, 0.1 + 0.05 * k);
+  const TwoLogs two(other);
+  const MapResult result = mapped(two.log);
+  expect_whole(result, two.log);
+  EXPECT_THAT(sizes_of(result), ElementsAre(two.first.size(), two.second.size()));
+  const PositionResult& start = result.positions[two.first.size()];
+  EXPECT_TRUE(start.starts_fragment);
+  EXPECT_FALSE(result.why_not_in_map(start).empty());
+  for (const ClosedLoop& loop : result.loops) EXPECT_EQ(loop.a < two.first.size(), loop.b < two.first.size());
+}
+
+/// Where a log starts, nothing before it is asked: even if the scans there are the same.
+TEST(RobustMap, ChainsNothingFromOneLogToTheNext) {
+  Log log;
+  const std::vector<Pose2> walk = test::ring_walk(5, 5);
+  add_walk(log, test::ring_world(1), walk);
+  MappingOptions options = quick();
+  options.robust.loops.close_loops = false;
+  ASSERT_EQ(mapped(log, options).fragments.size(), 1U);
+  log.starts = {2, 4};
+  EXPECT_THAT(sizes_of(mapped(log, options)), ElementsAre(2, 2, 1));
+  log.positions.insert(log.positions.begin() + 4, test::blind_position());  // the log starts blind
+  EXPECT_THAT(sizes_of(mapped(log, options)), ElementsAre(2, 2, 1));
+}
+
+TEST(RobustMap, IsTheSameToTheBitForAnyNumberOfThreads) {
+  const TwoLogs two(test::ring_world(1));
+  MappingOptions options = quick();
+  const MapResult one = mapped(two.log, options);
+  options.run.threads = 3;
+  expect_same_bits(mapped(two.log, options), one);
+}
+
+TEST(RobustMap, StoppedAtAnyTimeIsWhole) {
+  const TwoLogs two(test::ring_world(1));
+  MappingOptions options = quick();
+  options.robust.loop_detection.likely_places = 2;
+  test::Patience patient(100000);
+  const MapResult whole = map_log(two.log, options, patient);
+  EXPECT_FALSE(whole.interrupted);
+  const std::size_t all = patient.asked;
+  std::set<std::size_t> times{0, 1, 2, 3, 4, 5, all / 2, all - 1, all};
+  for (const std::size_t n : times) {
+    SCOPED_TRACE("of " + std::to_string(all) + " questions: " + std::to_string(n));
+    test::Patience observer(n);
+    const MapResult result = map_log(two.log, options, observer);
+    EXPECT_TRUE(result.interrupted);
+    expect_whole(result, two.log);
+  }
+  test::Patience just_enough(all + 1);
+  const MapResult result = map_log(two.log, options, just_enough);
+  EXPECT_FALSE(result.interrupted);
+  expect_same_bits(result, whole);
+}
+
+}  // namespace
+}  // namespace shapemap

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/mapper/trace_sink.hpp"
+
+#include <gmock/gmock.h>
+
+#include <stdexcept>
+
+#include "shapemap/mapper/map_log.hpp"
+#include "shapemap/matching/match_probability.hpp"
+#include "support/matchers.hpp"
+#include "support/synthetic_world.hpp"
+
+namespace shapemap {
+namespace {
+
+using test::HasSameBits;
+using ::testing::ElementsAre;
+
+constexpr std::size_t kCount = 6;
+constexpr std::size_t kBlind = 3;  ///< of these positions, the one without returns
+
+Log walk_with_a_blind_position() {
+  Log log;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const auto k = static_cast<double>(i);
+    log.positions.push_back(test::scan_of(test::cluttered_room(2), {-0.4 + 0.15 * k, 0.02 * k * k, 0.0}));
+    log.positions.back().timestamp_s = k;
+  }
+  for (float& range_m : log.positions[kBlind].sub_scans[0].ranges_m) range_m = 0.0F;
+  return log;
+}
+
+MappingOptions options_of(Method method) {
+  MappingOptions options = test::paper_options();
+  options.run.method = method;
+  options.robust.keyframes.step_m = 0.0;  // each scan is aligned to the one before it
+  return options;
+}
+
+/// Keeps copies of what it is shown.
+struct Recorder : TraceSink {
+  struct Link {
+    std::size_t reference, query, num_own;
+    double view_shortfall;
+    std::vector<PoseHypothesis> hypotheses;
+  };
+  void on_shape(std::size_t index, const std::vector<ShapePoint>& points) override {
+    indices.push_back(index);
+    num_points.push_back(points.size());
+  }
+  void on_alignment(const TracedAlignment& shown) override {
+    alignments.push_back(shown.alignment);
+    steps.push_back(shown.steps);
+    targets.push_back(shown.targets);
+    queries.push_back(shown.query_index);
+  }
+  void on_link(const TracedLink& l) override {
+    links.push_back({l.reference_index, l.query_index, l.num_own, l.view_shortfall, l.hypotheses});
+  }
+  void on_choice(const TracedChoice& choice) override { choices.push_back(choice); }
+
+  std::vector<std::size_t> indices, num_points, queries;
+  std::vector<Alignment> alignments;
+  std::vector<AlignTrace> steps;
+  std::vector<std::vector<TracedTarget>> targets;
+  std::vector<Link> links;
+  std::vector<TracedChoice> choices;
+};
+
+MapResult mapped(const Log& log, Method method, TraceSink* sink) {
+  RunObserver nobody;
+  return map_log(log, options_of(method), nobody, sink);
+}
+
+TEST(TraceSink, LookingOnChangesNoBit) {
+  const Log log = walk_with_a_blind_position();
+  for (const Method method : {Method::kPaper, Method::kRobust}) {
+    Recorder recorder;
+    const MapResult with = mapped(log, method, &recorder);
+    const MapResult without = mapped(log, method, nullptr);
+    ASSERT_EQ(with.positions.size(), kCount);
+    ASSERT_EQ(with.fragments.size(), without.fragments.size());
+    for (std::size_t f = 0; f < with.fragments.size(); ++f) {
+      ASSERT_EQ(with.fragments[f].positions.size(), without.fragments[f].positions.size());
+      for (std::size_t i = 0; i < with.fragments[f].positions.size(); ++i) {
+        EXPECT_THAT(with.fragments[f].positions[i].map_from_robot,
+                    HasSameBits(without.fragments[f].positions[i].map_from_robot));
+      }
+    }
+    EXPECT_THAT(recorder.indices, ElementsAre(0, 1, 2, 3, 4, 5));
+    EXPECT_EQ(recorder.num_points[kBlind], 0U);
+  }
+}
+
+TEST(TraceSink, SeesEachAlignmentOfThePapersMethodWithItsTargets) {
+  Recorder recorder;
+  const MapResult result = mapped(walk_with_a_blind_position(), Method::kPaper, &recorder);
+  EXPECT_TRUE(recorder.links.empty());
+  EXPECT_THAT(recorder.queries, ElementsAre(1, 2, 5));  // 4 has nothing before it
+  for (std::size_t k = 0; k < recorder.queries.size(); ++k) {
+    const Alignment& alignment = recorder.alignments[k];
+    const AlignTrace& steps = recorder.steps[k];
+    EXPECT_THAT(alignment.ref_from_query, HasSameBits(result.positions[recorder.queries[k]].alignment.ref_from_query));
+    ASSERT_GE(steps.best_rotation, 0);
+    const RotationMatch& best = steps.rotations[static_cast<std::size_t>(steps.best_rotation)];
+    EXPECT_THAT(best.target_from_query(), HasSameBits(alignment.shape_ref_from_query));
+    EXPECT_GE(best.lcs.size(), best.spread.size());
+    EXPECT_EQ(best.translation.kept.size(), static_cast<std::size_t>(alignment.num_correspondences));
+    EXPECT_THAT(steps.icp.steps.back(), HasSameBits(alignment.icp_ref_from_query));
+  }
+  ASSERT_EQ(recorder.targets[1].size(), 2U);
+  EXPECT_EQ(recorder.targets[1][0].position_index, 0U);
+  EXPECT_EQ(recorder.targets[1][1].position_index, 1U);
+  EXPECT_THAT(recorder.targets[1][1].ref_from_robot, test::IsNearPose(Pose2{}, 1e-12, 1e-12));
+  EXPECT_EQ(recorder.targets[1][1].num_points, recorder.num_points[1]);
+}
+
+TEST(TraceSink, SeesWhatTheRobustMethodChoosesFrom) {
+  Recorder recorder;
+  const MapResult result = mapped(walk_with_a_blind_position(), Method::kRobust, &recorder);
+  EXPECT_TRUE(recorder.alignments.empty());
+  ASSERT_EQ(recorder.links.size(), 4U);
+  ASSERT_EQ(recorder.choices.size(), 4U);
+  EXPECT_EQ(recorder.links[2].reference, 2U);  // across the blind one
+  EXPECT_EQ(recorder.links[2].query, 4U);
+  for (std::size_t k = 0; k < recorder.links.size(); ++k) {
+    const Recorder::Link& link = recorder.links[k];
+    const TracedChoice& choice = recorder.choices[k];
+    EXPECT_EQ(choice.reference_index, link.reference);
+    EXPECT_EQ(choice.query_index, link.query);
+    EXPECT_GT(link.num_own, 0U);
+    EXPECT_LE(link.num_own, link.hypotheses.size());
+    ASSERT_LT(choice.alternative, link.hypotheses.size());
+    EXPECT_THAT(link.hypotheses[choice.alternative].ref_from_query,
+                HasSameBits(result.positions[link.query].alignment.ranked[0].ref_from_query));
+  }
+}
+
+TEST(TraceSink, SeesHowLittleNarrowScansSeeAndThatCountsInTheResult) {
+  test::Scanner narrow;
+  narrow.num_beams = 91;
+  narrow.view_rad = 91 * kDegree;
+  Log log;
+  for (const double x_m : {0.0, 0.15}) {
+    log.positions.push_back(test::scan_of(test::cluttered_room(2), {x_m, 0.0, 0.0}, narrow));
+  }
+  MappingOptions options = options_of(Method::kRobust);
+  options.robust.edge_verification.doubt_below = 0.0;  // judged by the two scans
+  Recorder recorder;
+  RunObserver nobody;
+  const MapResult result = map_log(log, options, nobody, &recorder);
+  ASSERT_EQ(recorder.links.size(), 1U);
+  const Recorder::Link& link = recorder.links[0];
+  EXPECT_NEAR(link.view_shortfall, 0.2, 0.05);
+  const TracedChoice& choice = recorder.choices.at(0);
+  const double match = match_probability(link.hypotheses.at(choice.alternative), choice.margin);
+  EXPECT_EQ(result.positions[1].alignment.probability, probability_of_neighbours(match, link.view_shortfall));
+}
+
+TEST(TraceSink, WhatItThrowsEndsTheRun) {
+  struct Full : TraceSink {
+    void on_shape(std::size_t index, const std::vector<ShapePoint>& /*points*/) override {
+      if (index == 2) throw std::runtime_error("full");
+    }
+  };
+  const Log log = walk_with_a_blind_position();
+  for (const Method method : {Method::kPaper, Method::kRobust}) {
+    Full sink;
+    EXPECT_THROW(mapped(log, method, &sink), std::runtime_error);
+  }
+}
+
+}  // namespace
+}  // namespace shapemap

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "shapemap/matching/match_cache.hpp"
+
+#include <gmock/gmock.h>
+
+#include <map>
+#include <mutex>
+#include <random>
+#include <stdexcept>
+#include <tuple>
+
+#include "shapemap/mapper/map_log.hpp"
+#include "support/matchers.hpp"
+#include "support/views.hpp"
+
+namespace shapemap {
+namespace {
+
+using test::HasSameBits;
+
+/// In memory, counting what it is asked.
+struct MemoryStore : AlignmentStore {
+  using Key = std::tuple<std::size_t, std::size_t, SearchKind>;
+
+  std::optional<std::vector<PoseHypothesis>> find(const AlignmentKey& key) override {
+    const std::lock_guard<std::mutex> lock(mutex);
+    const auto found = known.find({key.reference, key.query, key.search});
+    if (found == known.end()) return std::nullopt;
+    ++num_found;
+    return found->second;
+  }
+  void keep(const AlignmentKey& key, const std::vector<PoseHypothesis>& hypotheses) override {
+    const std::lock_guard<std::mutex> lock(mutex);
+    if (known.size() >= limit) throw std::runtime_error("full");
+    known[{key.reference, key.query, key.search}] = hypotheses;
+    ++num_kept;
+  }
+
+  /// Loses the alignments that `is_lost` says, by their number.
+  template <class IsLost>
+  void lose(IsLost&& is_lost) {
+    std::size_t i = 0;
+    for (auto it = known.begin(); it != known.end(); ++i) it = is_lost(i) ? known.erase(it) : std::next(it);
+    num_found = 0;
+    num_kept = 0;
+  }
+
+  std::mutex mutex;
+  std::map<Key, std::vector<PoseHypothesis>> known;
+  std::size_t num_found = 0;
+  std::size_t num_kept = 0;
+  std::size_t limit = 1000000;
+};
+
+/// Two rounds through a room, with a blind scan, so that keyframes are not the positions: loops, doubts and bridges.
+Log two_rounds() {
+  const test::World world = test::cluttered_room(2);
+  std::mt19937 rng(7);
+  Log log;
+  for (std::size_t i = 0; i < 34; ++i) {
+    const double angle_rad = 2 * kPi * static_cast<double>(i) / 16.0;
+    const Pose2 pose{0.9 * std::cos(angle_rad), 0.8 * std::sin(angle_rad), wrap_angle(1.7 * angle_rad)};
+    log.positions.push_back(i == 5 ? test::blind_position() : test::scan_of(world, pose, test::half_circle(), rng));
+    log.positions.back().timestamp_s = static_cast<double>(i);
+  }
+  return log;
+}
+
+MappingOptions doubtful() {
+  MappingOptions options;
+  options.robust.matcher.search.hypotheses.rotation_peaks = 3;
+  options.robust.matcher.search.hypotheses.refined = 4;
+  options.robust.matcher.search.voting.peaks = 6;
+  options.robust.front_end.doubt_below = 1.0;
+  options.robust.loop_detection.bridge_below = 1.0;
+  options.robust.keyframes.step_m = 0.0;
+  return options;
+}
+
+MapResult mapped(const Log& log, AlignmentStore* store, int threads = 2) {
+  MappingOptions options = doubtful();
+  options.run.threads = threads;
+  RunObserver nobody;
+  return map_log(log, options, nobody, nullptr, store);
+}
+
+void expect_same_bits(const MapResult& a, const MapResult& b) {
+  ASSERT_EQ(a.fragments.size(), b.fragments.size());
+  for (std::size_t f = 0; f < a.fragments.size(); ++f) {
+    ASSERT_EQ(a.fragments[f].positions.size(), b.fragments[f].positions.size());
+    for (std::size_t i = 0; i < a.fragments[f].positions.size(); ++i) {
+      EXPECT_THAT(a.fragments[f].positions[i].map_from_robot, HasSameBits(b.fragments[f].positions[i].map_from_robot));
+    }
+  }
+  ASSERT_EQ(a.loops.size(), b.loops.size());
+  for (std::size_t i = 0; i < a.loops.size(); ++i) EXPECT_EQ(a.loops[i].strength, b.loops[i].strength);
+}
+
+TEST(AlignmentStore, ChangesNothingWhateverItKnows) {
+  const Log log = two_rounds();
+  const MapResult without = mapped(log, nullptr);
+  MemoryStore store;
+  expect_same_bits(mapped(log, &store), without);
+  ASSERT_GT(store.num_kept, 100U);
+  const auto all = store.known;
+
+  for (const int share : {2, 3}) {
+    store.known = all;
+    store.lose([&](std::size_t i) { return i % static_cast<std::size_t>(share) == 0; });
+    expect_same_bits(mapped(log, &store, share), without);
+    EXPECT_GT(store.num_found, 0U);
+    EXPECT_GT(store.num_kept, 0U);
+    EXPECT_EQ(store.known.size(), all.size());
+  }
+}
+
+TEST(AlignmentStore, ThatKnowsAllLeavesNothingToSearch) {
+  const Log log = two_rounds();
+  MemoryStore store;
+  mapped(log, &store);
+  store.lose([](std::size_t) { return false; });
+  mapped(log, &store);
+  EXPECT_EQ(store.num_kept, 0U);
+}
+
+TEST(AlignmentStore, IsAskedByPosition) {
+  MemoryStore store;
+  mapped(two_rounds(), &store);
+  using Key = MemoryStore::Key;
+  EXPECT_EQ(store.known.count(Key{4, 6, SearchKind::kFull}), 1U);  // 5 is blind
+  std::size_t of_last = 0;
+  std::size_t borrowed = 0;
+  for (const auto& [key, unused] : store.known) {
+    const auto [reference, query, search] = key;
+    EXPECT_LT(reference, query);
+    EXPECT_NE(reference, 5U);
+    EXPECT_NE(query, 5U);
+    of_last += query == 33 && search == SearchKind::kLoop ? 1 : 0;
+    borrowed += search == SearchKind::kBorrowed ? 1 : 0;
+  }
+  EXPECT_GT(of_last, 2U);
+  EXPECT_GT(borrowed, 30U);
+}
+
+TEST(AlignmentStore, EndsTheRunWhenItCannotKeep) {
+  for (const std::size_t limit : {5U, 90U}) {
+    MemoryStore store;
+    store.limit = limit;
+    EXPECT_THROW(mapped(two_rounds(), &store), std::runtime_error) << limit;
+  }
+}
+
+}  // namespace
+}  // namespace shapemap
