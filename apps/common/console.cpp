@@ -52,7 +52,7 @@ std::string sensor_text(const LogSummary::Sensor& sensor, const LogSummary& summ
   char text[320];
   std::snprintf(text, sizeof text,
                 "  sub-scans   %zu\n  beams       %s over %.6g deg\n  returns     %.1f %%, %.2f to %.2f m\n",
-                sensor.num_sub_scans, beams_text(sensor).c_str(), sensor.fov_rad / kDegree, 100.0 * sensor.return_ratio,
+                sensor.num_sweeps, beams_text(sensor).c_str(), sensor.fov_rad / kDegree, 100.0 * sensor.return_ratio,
                 sensor.shortest_return_m, sensor.longest_return_m);
   std::string all = "sensor      " +
                     (sensor.label.empty() ? "(without a label)" : printable(sensor.label, kMostNameShown)) + "\n" +
@@ -96,7 +96,7 @@ void print_lines(const std::string& prefix, const std::vector<std::string>& line
 
 std::string log_summary_text(const LogSummary& summary) {
   char text[160];
-  std::snprintf(text, sizeof text, "positions   %zu\nduration    %.3f s\n", summary.num_positions, summary.duration_s);
+  std::snprintf(text, sizeof text, "positions   %zu\nduration    %.3f s\n", summary.num_scans, summary.duration_s);
   std::string all = "format      " + summary.format + "\n" + text;
   for (const LogSummary::Sensor& sensor : summary.sensors) all += sensor_text(sensor, summary);
   return all;

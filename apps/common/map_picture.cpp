@@ -24,7 +24,7 @@ std::string ros_yaml_path(const std::string& map_path) {
   return std::filesystem::path(map_path).replace_extension(".yaml").string();
 }
 
-void add_map(const std::string& map_path, const GridMap& map, const std::vector<PlacedPosition>* path_to_draw,
+void add_map(const std::string& map_path, const OccupancyGrid& map, const std::vector<PlacedScan>* path_to_draw,
              OutputSet& outputs) {
   outputs.add(map_path, [&](const std::string& path) { write_map_image(map, path, path_to_draw); });
   const std::string image_name = std::filesystem::path(map_path).filename().string();

@@ -17,7 +17,7 @@ void check_map_path(const std::string& option, const std::string& map_path);
 std::string ros_yaml_path(const std::string& map_path);
 
 /// Prepares both; `path_to_draw` may be null.
-void add_map(const std::string& map_path, const GridMap& map, const std::vector<PlacedPosition>* path_to_draw,
+void add_map(const std::string& map_path, const OccupancyGrid& map, const std::vector<PlacedScan>* path_to_draw,
              OutputSet& outputs);
 
 }  // namespace shapemap::cli

@@ -38,7 +38,7 @@ struct BaselineSettings {
   IcpOptions icp;
   RbpfOptions rbpf;
   VascoOptions vasco;
-  GridMapOptions grid;
+  OccupancyGridOptions grid;
 
   template <class Self, class Visit>
   static void groups(Self& self, Visit&& visit) {

@@ -71,11 +71,11 @@ class CountGrid {
 
 }  // namespace
 
-std::vector<Beam> beams_of(const Position& position, const ReturnOptions& returns, double max_range_m) {
+std::vector<Beam> beams_of(const Scan& position, const ReturnOptions& returns, double max_range_m) {
   std::vector<Beam> beams;
-  for (const SubScan& sub_scan : position.sub_scans) {
-    const Point2 from_m = robot_from_sensor2(sub_scan).translation();
-    for (const Return& hit : returns_in_robot(sub_scan, returns)) {
+  for (const Sweep& sweep : position.sweeps) {
+    const Point2 from_m = robot_from_sensor2(sweep).translation();
+    for (const Return& hit : returns_in_robot(sweep, returns)) {
       if (hit.range_m <= max_range_m) beams.push_back({from_m, hit.p_in_robot_m});
     }
   }

@@ -20,17 +20,17 @@ Eigen::Matrix3d covariance_of(double sigma_m, double sigma_rad) {
 /// For each position the line with its time, or null. Both are in the order of the log; a log may repeat a time.
 template <class Timed>
 std::vector<const Timed*> by_position(const Log& log, const std::vector<Timed>& lines) {
-  std::vector<const Timed*> found(log.positions.size(), nullptr);
+  std::vector<const Timed*> found(log.scans.size(), nullptr);
   std::size_t at = 0;
   for (const Timed& line : lines) {
-    while (at < found.size() && std::abs(log.positions[at].timestamp_s - line.timestamp_s) > kSameTime_s) ++at;
+    while (at < found.size() && std::abs(log.scans[at].timestamp_s - line.timestamp_s) > kSameTime_s) ++at;
     if (at == found.size()) {
       throw InputError(line.where + ": no position of the log has this timestamp after those of the lines before");
     }
     found[at++] = &line;
   }
   for (std::size_t i = 1; i < found.size(); ++i) {
-    const bool same_time = log.positions[i].timestamp_s - log.positions[i - 1].timestamp_s == 0.0;
+    const bool same_time = log.scans[i].timestamp_s - log.scans[i - 1].timestamp_s == 0.0;
     if (!same_time || (found[i] == nullptr) == (found[i - 1] == nullptr)) continue;
     const Timed& line = found[i] ? *found[i] : *found[i - 1];
     throw InputError(line.where + ": the log repeats this timestamp, and not all of its positions have a line");
@@ -43,7 +43,7 @@ using KnownMotions = std::vector<std::optional<Motion>>;
 
 KnownMotions from_poses(const Log& log, const std::string& path, const MotionOptions& options) {
   const std::vector<TimedPose> poses = read_tum_trajectory(path);
-  KnownMotions motions(log.positions.size());
+  KnownMotions motions(log.scans.size());
   const std::vector<const TimedPose*> found = by_position(log, poses);
   const TimedPose* last = nullptr;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -85,14 +85,14 @@ Motion compose(const Motion& first, const Motion& second) {
 std::vector<Motion> motions_for(const Log& log, const SelectionOptions& selection, const MotionSources& sources,
                                 const MotionOptions& options) {
   validate(options);
-  KnownMotions known(log.positions.size());
+  KnownMotions known(log.scans.size());
   if (!sources.poses_path.empty()) known = from_poses(log, sources.poses_path, options);
   if (!sources.covariances_path.empty()) add_covariances(log, sources, known);
 
   const Motion nothing_known{Pose2{}, covariance_of(options.unknown_sigma_m, options.unknown_sigma_rad)};
   std::vector<Motion> motions;
   std::optional<Motion> way;  // since the latest selected position
-  for (std::size_t i = 0; i < log.positions.size(); ++i) {
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
     if (known[i]) way = way ? compose(*way, *known[i]) : *known[i];
     if (i != index_in_whole_log(motions.size(), selection)) continue;
     if (selection.first > 0 && motions.size() == static_cast<std::size_t>(selection.first)) break;

@@ -57,7 +57,7 @@ class MrptIcp : public SlamMethod {
     builder_.initialize();
   }
 
-  void add(const Position& position, const Motion& motion) override {
+  void add(const Scan& position, const Motion& motion) override {
     if (!poses_.empty()) odometry_from_robot_ = odometry_from_robot_ * motion.previous_from_this;
     auto odometry = mrpt::obs::CObservationOdometry::Create();
     odometry->timestamp = time_of(2 * poses_.size());
@@ -73,10 +73,10 @@ class MrptIcp : public SlamMethod {
 
  private:
   /// All sub-scans together, so that a position is aligned as one; null when nothing was hit.
-  mrpt::obs::CObservationPointCloud::Ptr points_of(const Position& position) const {
+  mrpt::obs::CObservationPointCloud::Ptr points_of(const Scan& position) const {
     auto points = mrpt::maps::CSimplePointsMap::Create();
-    for (const SubScan& sub_scan : position.sub_scans) {
-      for (const Return& hit : returns_in_robot(sub_scan, returns_)) {
+    for (const Sweep& sweep : position.sweeps) {
+      for (const Return& hit : returns_in_robot(sweep, returns_)) {
         points->insertPoint(static_cast<float>(hit.p_in_robot_m.x()), static_cast<float>(hit.p_in_robot_m.y()));
       }
     }

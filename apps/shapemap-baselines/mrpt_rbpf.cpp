@@ -94,7 +94,7 @@ mrpt::obs::CActionRobotMovement3D action_of(const Motion& motion) {
   return action;
 }
 
-mrpt::obs::CSensoryFrame frame_of(const Position& position) {
+mrpt::obs::CSensoryFrame frame_of(const Scan& position) {
   const std::string bytes = frame_to_rawlog(position);
   mrpt::io::CMemoryStream stream;
   stream.assignMemoryNotOwn(bytes.data(), bytes.size());
@@ -111,7 +111,7 @@ class MrptRbpf : public SlamMethod {
     filter_.initialize();
   }
 
-  void add(const Position& position, const Motion& motion) override {
+  void add(const Scan& position, const Motion& motion) override {
     const Pose2 way = entries_.empty() ? Pose2{} : motion.previous_from_this;
     since_update_ = entries_.empty() ? Motion{} : compose(since_update_, motion);
     if (!entries_.empty() && is_small(since_update_)) {

@@ -35,10 +35,10 @@ void check_paths(const Arguments& arguments) {
 /// What shapemap takes for no return is none for the other methods either. Beams that hit nothing can still be told
 /// from those whose reading means nothing, for the picture.
 void drop_non_returns(Log& log, const ReturnOptions& options) {
-  for (Position& position : log.positions) {
-    for (SubScan& sub_scan : position.sub_scans) {
-      const RangeLimits limits = range_limits(sub_scan, options);
-      for (float& range_m : sub_scan.ranges_m) {
+  for (Scan& position : log.scans) {
+    for (Sweep& sweep : position.sweeps) {
+      const RangeLimits limits = range_limits(sweep, options);
+      for (float& range_m : sweep.ranges_m) {
         if (is_return(range_m, limits)) continue;
         range_m = is_open(range_m, limits) ? std::numeric_limits<float>::quiet_NaN() : 0.0F;
       }
@@ -47,47 +47,47 @@ void drop_non_returns(Log& log, const ReturnOptions& options) {
 }
 
 /// The poses of the positions that were placed before an end of time or memory, in the frame of the first.
-std::vector<PlacedPosition> place_all(const Log& log, const std::vector<Motion>& motions, const Arguments& arguments,
-                                      std::vector<std::string>& warnings) {
+std::vector<PlacedScan> place_all(const Log& log, const std::vector<Motion>& motions, const Arguments& arguments,
+                                  std::vector<std::string>& warnings) {
   const std::unique_ptr<SlamMethod> method = make_method(arguments.method, arguments.settings);
   cli::ConsoleObserver observer(!arguments.quiet);
   const cli::Stopwatch stopwatch;
   const double max_s = arguments.settings.run.max_seconds;
-  const std::size_t num_positions = log.positions.size();
-  for (std::size_t i = 0; i < num_positions; ++i) {
+  const std::size_t num_scans = log.scans.size();
+  for (std::size_t i = 0; i < num_scans; ++i) {
     if (!observer.keep_going()) throw Interrupted();
     const bool late = max_s > 0.0 && stopwatch.seconds() > max_s;
     std::string why = late ? "--max-seconds is over" : "";
     try {
-      if (!late) method->add(log.positions[i], motions[i]);
+      if (!late) method->add(log.scans[i], motions[i]);
     } catch (const CannotGoOn& e) {
       why = e.what();
     }
     if (!why.empty()) {
-      warnings.push_back(std::to_string(num_positions - i) + " of " + std::to_string(num_positions) +
+      warnings.push_back(std::to_string(num_scans - i) + " of " + std::to_string(num_scans) +
                          " positions are not placed: " + why);
       break;
     }
-    observer.on_progress(i + 1, num_positions);
+    observer.on_progress(i + 1, num_scans);
   }
   observer.finish();
 
-  std::vector<PlacedPosition> placed;
+  std::vector<PlacedScan> placed;
   for (const Pose2& pose : method->map_from_robot()) {
-    const Position& position = log.positions[placed.size()];
-    placed.push_back({placed.size(), position.timestamp_s, pose, std::vector<Pose2>(position.sub_scans.size())});
+    const Scan& position = log.scans[placed.size()];
+    placed.push_back({placed.size(), position.timestamp_s, pose, std::vector<Pose2>(position.sweeps.size())});
   }
   if (placed.empty()) throw InputError(arguments.log_path + ": no position could be placed; nothing written");
   const Pose2 first_from_map = inverse(placed.front().map_from_robot);
-  for (PlacedPosition& place : placed) place.map_from_robot = first_from_map * place.map_from_robot;
+  for (PlacedScan& place : placed) place.map_from_robot = first_from_map * place.map_from_robot;
   return placed;
 }
 
-void write_outputs(const Arguments& arguments, const Log& log, const std::vector<PlacedPosition>& placed) {
+void write_outputs(const Arguments& arguments, const Log& log, const std::vector<PlacedScan>& placed) {
   cli::OutputSet outputs(arguments.force);
   if (!arguments.map_path.empty()) {
     cli::set_interrupt_policy(cli::OnInterrupt::kExitAtOnce);  // nothing is open yet
-    const GridMap map = build_grid_map(log, placed, arguments.settings.returns, arguments.settings.grid);
+    const OccupancyGrid map = build_occupancy_grid(log, placed, arguments.settings.returns, arguments.settings.grid);
     cli::set_interrupt_policy(cli::OnInterrupt::kFinishStep);
     cli::add_map(arguments.map_path, map, nullptr, outputs);
     if (map.num_outside > 0 && !arguments.quiet) {
@@ -99,8 +99,7 @@ void write_outputs(const Arguments& arguments, const Log& log, const std::vector
   outputs.commit();
 }
 
-void print_summary(const Arguments& arguments, const Log& log, const std::vector<PlacedPosition>& placed,
-                   double wall_s) {
+void print_summary(const Arguments& arguments, const Log& log, const std::vector<PlacedScan>& placed, double wall_s) {
   std::string written;
   for (const std::string& path : output_paths(arguments)) {
     written += (written.empty() ? "" : ", ") + (path == "-" ? "standard output" : path);
@@ -108,7 +107,7 @@ void print_summary(const Arguments& arguments, const Log& log, const std::vector
   char costs[80];
   std::snprintf(costs, sizeof costs, " positions in %.1f s, %.0f MiB; written: ", wall_s, cli::peak_memory_mib());
   cli::print_line(enum_name(arguments.method) + " placed " + std::to_string(placed.size()) + " of " +
-                  std::to_string(log.positions.size()) + costs + written);
+                  std::to_string(log.scans.size()) + costs + written);
 }
 
 int run(const Arguments& arguments) {
@@ -122,13 +121,13 @@ int run(const Arguments& arguments) {
   std::vector<std::string> warnings = log.warnings;
 
   cli::set_interrupt_policy(cli::OnInterrupt::kFinishStep);
-  const std::vector<PlacedPosition> placed = place_all(log, motions, arguments, warnings);
+  const std::vector<PlacedScan> placed = place_all(log, motions, arguments, warnings);
   write_outputs(arguments, log, placed);
   if (!arguments.quiet) {
     cli::print_lines("warning: ", warnings, cli::kMaxListed, "");
     print_summary(arguments, log, placed, total.seconds());
   }
-  return placed.size() == log.positions.size() ? cli::kExitOk : cli::kExitIncomplete;
+  return placed.size() == log.scans.size() ? cli::kExitOk : cli::kExitIncomplete;
 }
 
 }  // namespace

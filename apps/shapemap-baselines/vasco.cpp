@@ -39,7 +39,7 @@ class Vasco : public SlamMethod {
     validate(options);
   }
 
-  void add(const Position& position, const Motion& motion) override {
+  void add(const Scan& position, const Motion& motion) override {
     const std::vector<Beam> beams = beams_of(position, returns_, options_.longest_beam_m);
     Pose2 pose;
     if (!poses_.empty()) {

@@ -22,10 +22,10 @@ void check_paths(const AlignArguments& arguments) {
   }
 }
 
-std::vector<PositionPair> wanted_pairs(const AlignArguments& arguments, const Log& references, const Log& queries) {
-  const std::size_t num_references = references.positions.size();
-  if (arguments.gap == 0) return read_pairs(arguments.pairs_path, num_references, queries.positions.size());
-  std::vector<PositionPair> pairs = pairs_with_gap(num_references, static_cast<std::size_t>(arguments.gap));
+std::vector<ScanPair> wanted_pairs(const AlignArguments& arguments, const Log& references, const Log& queries) {
+  const std::size_t num_references = references.scans.size();
+  if (arguments.gap == 0) return read_pairs(arguments.pairs_path, num_references, queries.scans.size());
+  std::vector<ScanPair> pairs = pairs_with_gap(num_references, static_cast<std::size_t>(arguments.gap));
   if (pairs.empty()) {
     throw ConfigError("--gap " + std::to_string(arguments.gap) + " leaves no pair of " +
                       std::to_string(num_references) + " positions");
@@ -45,7 +45,7 @@ Log with_straight_sweeps(Log log, const AlignArguments& arguments) {
 }
 
 std::vector<AlignedPair> align_with_progress(const Log& references, const Log& queries,
-                                             const std::vector<PositionPair>& pairs, const AlignArguments& arguments) {
+                                             const std::vector<ScanPair>& pairs, const AlignArguments& arguments) {
   ConsoleObserver observer(!arguments.quiet, "pairs");
   std::vector<AlignedPair> aligned = align_pairs(references, queries, pairs, arguments.settings.mapping, observer);
   observer.finish();
@@ -79,7 +79,7 @@ int run_align(const AlignArguments& arguments) {
   const Log log = read(arguments.log_path);
   const Log other = arguments.other_path.empty() ? Log{} : read(arguments.other_path);
   const Log& queries = arguments.other_path.empty() ? log : other;
-  const std::vector<PositionPair> pairs = wanted_pairs(arguments, log, queries);
+  const std::vector<ScanPair> pairs = wanted_pairs(arguments, log, queries);
 
   set_interrupt_policy(OnInterrupt::kFinishStep);
   const std::vector<AlignedPair> aligned = align_with_progress(log, queries, pairs, arguments);

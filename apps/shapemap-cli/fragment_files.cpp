@@ -68,7 +68,7 @@ void check_fragments_folder(const std::string& folder, const std::vector<std::st
 }
 
 void add_fragments(const MapArguments& arguments, const LogSet& logs, const MapResult& result, OutputSet& outputs,
-                   std::vector<DrawnFragment>& drawn) {
+                   std::vector<DrawnComponent>& drawn) {
   const MapSettings& settings = arguments.settings;
   const fs::path folder = without_last_slash(arguments.fragments_folder);
   outputs.add_folder(folder.string());
@@ -77,18 +77,18 @@ void add_fragments(const MapArguments& arguments, const LogSet& logs, const MapR
     written.push_back(path);
     return path;
   };
-  for (std::size_t i = 0; i < result.fragments.size(); ++i) {
-    const std::vector<PlacedPosition>& placed = result.fragments[i].positions;
-    if (static_cast<int>(i) == result.largest_fragment || placed.empty()) continue;
+  for (std::size_t i = 0; i < result.components.size(); ++i) {
+    const std::vector<PlacedScan>& placed = result.components[i].scans;
+    if (static_cast<int>(i) == result.largest_component || placed.empty()) continue;
     const std::string base = (folder / ("fragment_" + std::to_string(i))).string();
-    const GridMap map = build_grid_map(logs.log, placed, settings.mapping.returns, settings.grid);
+    const OccupancyGrid map = build_occupancy_grid(logs.log, placed, settings.mapping.returns, settings.grid);
     drawn.push_back({static_cast<int>(i), map.num_returns, map.num_outside});
     add_map(note(base + ".png"), map, settings.drawing.draw_path ? &placed : nullptr, outputs);
     note(base + ".yaml");
     const std::vector<LogPart> parts = parts_of(logs.log);
     const std::vector<std::string> paths = per_log_paths(base + ".tum", arguments.logs);
     for (std::size_t k = 0; k < paths.size(); ++k) {
-      const std::vector<PlacedPosition> part = placed_of(placed, parts.at(k));
+      const std::vector<PlacedScan> part = placed_of(placed, parts.at(k));
       if (!part.empty()) outputs.add_text(note(paths[k]), tum_trajectory(part));
     }
   }

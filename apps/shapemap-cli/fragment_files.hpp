@@ -18,6 +18,6 @@ void check_fragments_folder(const std::string& folder, const std::vector<std::st
 
 /// Of each fragment but the largest. Those of a former run go. What the pictures show is added to `drawn`.
 void add_fragments(const MapArguments& arguments, const LogSet& logs, const MapResult& result, OutputSet& outputs,
-                   std::vector<DrawnFragment>& drawn);
+                   std::vector<DrawnComponent>& drawn);
 
 }  // namespace shapemap::cli

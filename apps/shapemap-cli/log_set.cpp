@@ -73,11 +73,10 @@ std::vector<std::string> per_log_paths(const std::string& path, const std::vecto
   return paths;
 }
 
-std::vector<PlacedPosition> placed_of(const std::vector<PlacedPosition>& placed, const LogPart& part) {
-  std::vector<PlacedPosition> some;
-  std::copy_if(placed.begin(), placed.end(), std::back_inserter(some), [&](const PlacedPosition& place) {
-    return part.first <= place.position_index && place.position_index < part.last;
-  });
+std::vector<PlacedScan> placed_of(const std::vector<PlacedScan>& placed, const LogPart& part) {
+  std::vector<PlacedScan> some;
+  std::copy_if(placed.begin(), placed.end(), std::back_inserter(some),
+               [&](const PlacedScan& place) { return part.first <= place.scan_index && place.scan_index < part.last; });
   return some;
 }
 

@@ -31,6 +31,6 @@ std::vector<std::string> short_names(const std::vector<LogSource>& logs);
 std::vector<std::string> per_log_paths(const std::string& path, const std::vector<LogSource>& logs);
 
 /// The positions of `placed` that are from one of the logs.
-std::vector<PlacedPosition> placed_of(const std::vector<PlacedPosition>& placed, const LogPart& part);
+std::vector<PlacedScan> placed_of(const std::vector<PlacedScan>& placed, const LogPart& part);
 
 }  // namespace shapemap::cli

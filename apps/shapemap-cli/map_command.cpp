@@ -26,8 +26,8 @@ void require_a_map(const MapArguments& arguments, const MapResult& result, const
   const std::string more =
       arguments.logs.size() > 1 ? " and " + std::to_string(arguments.logs.size() - 1) + " more" : "";
   std::string why = "'" + arguments.logs.front().path + "'" + more + ": none of " + (more.empty() ? "its " : "their ") +
-                    std::to_string(result.positions.size()) + " positions can be placed; nothing written";
-  if (!result.positions.empty()) why += " (the first: " + result.positions.front().reason + ")";
+                    std::to_string(result.scans.size()) + " positions can be placed; nothing written";
+  if (!result.scans.empty()) why += " (the first: " + result.scans.front().reason + ")";
   if (!warnings.empty()) why += "; " + warnings.front();
   throw InputError(why);
 }
@@ -35,7 +35,7 @@ void require_a_map(const MapArguments& arguments, const MapResult& result, const
 MapRun map_with_progress(const LogSet& logs, const MapArguments& arguments, TraceSink* sink,
                          std::vector<std::string>& warnings, RunCosts& costs) {
   ConsoleObserver observer(arguments.verbosity != Verbosity::kQuiet);
-  const std::unique_ptr<AlignmentStoreFile> state = open_state(arguments, logs.log, warnings);
+  const std::unique_ptr<MatchCacheFile> state = open_state(arguments, logs.log, warnings);
   print_resumed(arguments, state.get());
   MapRun run;
   MapResult& result = run.result;
@@ -46,7 +46,7 @@ MapRun map_with_progress(const LogSet& logs, const MapArguments& arguments, Trac
   warnings.insert(warnings.end(), observer.warnings().begin(), observer.warnings().end());
   costs.milestones = observer.milestones();
   if (arguments.settings.walls.align_walls) {
-    run.notes.walls = align_walls(logs.log, arguments.settings.mapping.returns, result.fragments);
+    run.notes.walls = align_walls(logs.log, arguments.settings.mapping.returns, result.components);
   }
   return run;
 }

@@ -10,18 +10,18 @@ namespace shapemap::cli {
 namespace {
 
 /// The positions that have a pose, and only those.
-Log placed_log(const LogSet& logs, std::size_t which, const std::vector<PlacedPosition>& placed, LogPoses& poses) {
+Log placed_log(const LogSet& logs, std::size_t which, const std::vector<PlacedScan>& placed, LogPoses& poses) {
   Log part;
   part.format = logs.files.at(which).format;
-  for (const PlacedPosition& place : placed) {
-    part.positions.push_back(logs.log.positions.at(place.position_index));
+  for (const PlacedScan& place : placed) {
+    part.scans.push_back(logs.log.scans.at(place.scan_index));
     poses.map_from_robot.push_back(place.map_from_robot);
   }
   return part;
 }
 
 void add_log(const std::string& to, LogFormat format, const LogSet& logs, std::size_t which,
-             const std::vector<PlacedPosition>& placed, OutputSet& outputs) {
+             const std::vector<PlacedScan>& placed, OutputSet& outputs) {
   LogPoses poses;
   const Log part = placed_log(logs, which, placed, poses);
   outputs.add(to, [&](const std::string& path) { write_log(part, path, format, &poses); });
@@ -76,12 +76,12 @@ void check_output_paths(const MapArguments& arguments) {
   check_fragments_folder(arguments.fragments_folder, paths, arguments.force);
 }
 
-std::vector<DrawnFragment> prepare_outputs(const MapArguments& arguments, const LogSet& logs, const MapResult& result,
-                                           OutputSet& outputs) {
-  const std::vector<PlacedPosition>& placed = result.placed();
+std::vector<DrawnComponent> prepare_outputs(const MapArguments& arguments, const LogSet& logs, const MapResult& result,
+                                            OutputSet& outputs) {
+  const std::vector<PlacedScan>& placed = result.placed();
   const MapSettings& settings = arguments.settings;
-  const GridMap map = build_grid_map(logs.log, placed, settings.mapping.returns, settings.grid);
-  std::vector<DrawnFragment> drawn{{result.largest_fragment, map.num_returns, map.num_outside}};
+  const OccupancyGrid map = build_occupancy_grid(logs.log, placed, settings.mapping.returns, settings.grid);
+  std::vector<DrawnComponent> drawn{{result.largest_component, map.num_returns, map.num_outside}};
   add_map(arguments.map_path, map, settings.drawing.draw_path ? &placed : nullptr, outputs);
   const auto for_each = [&](const std::string& path, const auto& add) {
     for_each_log(path, arguments, logs, result, add);

@@ -26,7 +26,7 @@ void check_output_paths(const MapArguments& arguments);
 
 /// Draws the map and prepares the files that were asked for, except the trace, which is
 /// written while mapping, and the report, which is made last. Says what the pictures show.
-std::vector<DrawnFragment> prepare_outputs(const MapArguments& arguments, const LogSet& logs, const MapResult& result,
-                                           OutputSet& outputs);
+std::vector<DrawnComponent> prepare_outputs(const MapArguments& arguments, const LogSet& logs, const MapResult& result,
+                                            OutputSet& outputs);
 
 }  // namespace shapemap::cli

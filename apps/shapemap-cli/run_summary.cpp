@@ -14,20 +14,20 @@ std::string counted(std::size_t count, const char* what) {
 }
 
 /// Whether an alignment to the positions before is behind its place; not so at the start of a log.
-bool is_chained(const PositionResult& position) {
-  return position.fragment >= 0 && !position.starts_fragment && position.alignment.status != AlignStatus::kNoShape;
+bool is_chained(const ScanResult& position) {
+  return position.component >= 0 && !position.starts_component && position.alignment.status != MatchStatus::kNoShape;
 }
 
 /// What makes the map though its alignment is in doubt.
-bool is_doubtful(const PositionResult& position) { return is_chained(position) && !position.alignment.ok(); }
+bool is_doubtful(const ScanResult& position) { return is_chained(position) && !position.alignment.ok(); }
 
-bool is_uncertain(const PositionResult& position) { return is_doubtful(position) && !position.held_by_loops; }
+bool is_uncertain(const ScanResult& position) { return is_doubtful(position) && !position.loop_constrained; }
 
 std::vector<std::string> uncertain_lines(const LogSet& logs, const MapResult& result) {
   std::vector<std::string> lines;
-  for (const PositionResult& position : result.positions) {
+  for (const ScanResult& position : result.scans) {
     if (!is_uncertain(position)) continue;
-    lines.push_back(logs.position_name(position.position_index) + " " + enum_name(position.alignment.status) + ": " +
+    lines.push_back(logs.position_name(position.scan_index) + " " + enum_name(position.alignment.status) + ": " +
                     position.alignment.reason);
   }
   return lines;
@@ -39,12 +39,12 @@ void print_uncertain(const MapResult& result) {
   std::size_t too_apart = 0;
   std::size_t ambiguous = 0;
   std::size_t degenerate = 0;
-  for (const PositionResult& position : result.positions) {
+  for (const ScanResult& position : result.scans) {
     if (is_chained(position)) ++aligned;
-    if (is_doubtful(position) && position.held_by_loops) ++held;
+    if (is_doubtful(position) && position.loop_constrained) ++held;
     if (!is_uncertain(position)) continue;
-    const AlignStatus status = position.alignment.status;
-    ++(status == AlignStatus::kAmbiguous ? ambiguous : status == AlignStatus::kDegenerate ? degenerate : too_apart);
+    const MatchStatus status = position.alignment.status;
+    ++(status == MatchStatus::kAmbiguous ? ambiguous : status == MatchStatus::kDegenerate ? degenerate : too_apart);
   }
   const std::size_t uncertain = too_apart + ambiguous + degenerate;
   if (uncertain + held == 0) return;
@@ -76,8 +76,8 @@ std::string contradicting_text(const LogSet& logs, const std::vector<std::size_t
 
 void print_contradicting(const LogSet& logs, const MapResult& result, std::size_t max_listed) {
   std::vector<std::size_t> found;
-  for (const PlacedPosition& place : result.placed()) {
-    if (place.agreement.contradicts_map) found.push_back(place.position_index);
+  for (const PlacedScan& place : result.placed()) {
+    if (place.consistency.contradicts_map) found.push_back(place.scan_index);
   }
   if (found.empty()) return;
   const std::size_t total = found.size();
@@ -89,23 +89,23 @@ void print_contradicting(const LogSet& logs, const MapResult& result, std::size_
 }
 
 /// "positions 3 to 8 of a.log, 0 to 4 of b.log"
-std::string fragment_text(const LogSet& logs, const std::vector<PlacedPosition>& positions) {
+std::string fragment_text(const LogSet& logs, const std::vector<PlacedScan>& scans) {
   std::string text;
   for (const LogPart& part : parts_of(logs.log)) {
-    const std::vector<PlacedPosition> own = placed_of(positions, part);
+    const std::vector<PlacedScan> own = placed_of(scans, part);
     if (own.empty()) continue;
     text += (text.empty() ? "" : "; ") + counted(own.size(), "position") + ", " +
-            logs.position_name(own.front().position_index) + " to " + logs.position_name(own.back().position_index);
+            logs.position_name(own.front().scan_index) + " to " + logs.position_name(own.back().scan_index);
   }
   return text;
 }
 
 std::vector<std::string> fragment_lines(const LogSet& logs, const MapResult& result) {
   std::vector<std::string> lines;
-  for (std::size_t i = 0; i < result.fragments.size(); ++i) {
-    if (static_cast<int>(i) == result.largest_fragment || result.fragments[i].positions.empty()) continue;
+  for (std::size_t i = 0; i < result.components.size(); ++i) {
+    if (static_cast<int>(i) == result.largest_component || result.components[i].scans.empty()) continue;
     lines.push_back("fragment " + std::to_string(i) +
-                    " is apart from the map: " + fragment_text(logs, result.fragments[i].positions));
+                    " is apart from the map: " + fragment_text(logs, result.components[i].scans));
   }
   return lines;
 }
@@ -123,14 +123,14 @@ void print_logs(const LogSet& logs, const MapResult& result) {
   }
 }
 
-void print_outside(const std::vector<DrawnFragment>& drawn) {
+void print_outside(const std::vector<DrawnComponent>& drawn) {
   std::size_t outside = 0;
   std::size_t returns = 0;
   std::size_t pictures = 0;
-  for (const DrawnFragment& fragment : drawn) {
-    if (&fragment != &drawn.front() && fragment.num_outside > 0) {
-      outside += fragment.num_outside;
-      returns += fragment.num_returns;
+  for (const DrawnComponent& component : drawn) {
+    if (&component != &drawn.front() && component.num_outside > 0) {
+      outside += component.num_outside;
+      returns += component.num_returns;
       ++pictures;
     }
   }
@@ -145,8 +145,8 @@ void print_outside(const std::vector<DrawnFragment>& drawn) {
 }
 
 void print_walls(const MapNotes& notes, const MapResult& result) {
-  if (notes.walls.empty() || result.largest_fragment < 0) return;
-  const WallDirection& walls = notes.walls.at(static_cast<std::size_t>(result.largest_fragment));
+  if (notes.walls.empty() || result.largest_component < 0) return;
+  const WallDirection& walls = notes.walls.at(static_cast<std::size_t>(result.largest_component));
   char text[200];
   if (walls.is_dominant()) {
     std::snprintf(text, sizeof text, "turned by %.2f degrees, so that %.0f %% of the walls are straight",
@@ -173,27 +173,27 @@ void print_details(const LogSet& logs, const RunCosts& costs, const StageTimes& 
                "write %.2f\n"
                "memory      %.0f MiB\n",
                costs.read_s, costs.map_s, times.shape_s, times.align_s, times.icp_s, times.decoupled_icp_s,
-               times.loops_s, times.agreement_s, costs.write_s, costs.peak_memory_mib);
+               times.loops_s, times.consistency_s, costs.write_s, costs.peak_memory_mib);
 }
 
 std::string result_text(const MapArguments& arguments, const MapResult& result, double wall_s) {
-  const auto keyframes = std::count_if(result.positions.begin(), result.positions.end(), [](const auto& position) {
-    return position.fragment >= 0 && position.is_keyframe;
+  const auto keyframes = std::count_if(result.scans.begin(), result.scans.end(), [](const auto& position) {
+    return position.component >= 0 && position.is_keyframe;
   });
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%.1f s", wall_s);
-  return "placed " + std::to_string(result.placed().size()) + " of " + counted(result.positions.size(), "position") +
-         " (" + counted(static_cast<std::size_t>(keyframes), "keyframe") + ", " + counted(result.loops.size(), "loop") +
-         ", " + counted(result.fragments.size(), "fragment") + ") in " + seconds + "; map: " + arguments.map_path;
+  return "placed " + std::to_string(result.placed().size()) + " of " + counted(result.scans.size(), "position") + " (" +
+         counted(static_cast<std::size_t>(keyframes), "keyframe") + ", " + counted(result.loops.size(), "loop") + ", " +
+         counted(result.components.size(), "fragment") + ") in " + seconds + "; map: " + arguments.map_path;
 }
 
 }  // namespace
 
 std::vector<std::string> unplaced_lines(const LogSet& logs, const MapResult& result) {
   std::vector<std::string> lines;
-  for (const PositionResult& position : result.positions) {
+  for (const ScanResult& position : result.scans) {
     const std::string why = result.why_not_in_map(position);
-    if (!why.empty()) lines.push_back(logs.position_name(position.position_index) + " not placed: " + why);
+    if (!why.empty()) lines.push_back(logs.position_name(position.scan_index) + " not placed: " + why);
   }
   return lines;
 }
@@ -207,10 +207,10 @@ void print_sweeps(const MapArguments& arguments, const LogSet& logs, const std::
 }
 
 void print_interrupted(const LogSet& logs, const MapResult& result) {
-  const std::size_t total = logs.log.positions.size();
-  const std::string where = result.positions.size() < total ? "after " + std::to_string(result.positions.size()) +
-                                                                  " of " + counted(total, "position")
-                                                            : "before all loops were looked for";
+  const std::size_t total = logs.log.scans.size();
+  const std::string where = result.scans.size() < total
+                                ? "after " + std::to_string(result.scans.size()) + " of " + counted(total, "position")
+                                : "before all loops were looked for";
   print_line("interrupted " + where + "; writing the map so far (once more: leave at once, with nothing written)");
 }
 

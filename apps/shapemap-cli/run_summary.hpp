@@ -14,8 +14,8 @@ namespace shapemap::cli {
 
 /// What is said of a map beside where its positions are.
 struct MapNotes {
-  std::vector<WallDirection> walls;  ///< of each fragment; empty when they were not asked for
-  std::vector<DrawnFragment> drawn;  ///< the map's first
+  std::vector<WallDirection> walls;   ///< of each fragment; empty when they were not asked for
+  std::vector<DrawnComponent> drawn;  ///< the map's first
 };
 
 /// Positions that have no place in the map.

@@ -39,17 +39,17 @@ void check_state(const MapArguments& arguments) {
   for (const std::string& input : input_paths(arguments)) check_outputs({path}, input, arguments.force);
 }
 
-std::unique_ptr<AlignmentStoreFile> open_state(const MapArguments& arguments, const Log& log,
-                                               std::vector<std::string>& warnings) {
+std::unique_ptr<MatchCacheFile> open_state(const MapArguments& arguments, const Log& log,
+                                           std::vector<std::string>& warnings) {
   if (arguments.state_path.empty()) return nullptr;
   StateOpening opening = arguments.force ? StateOpening::kReplace : StateOpening::kCreate;
   if (arguments.resume) opening = StateOpening::kResume;
-  auto state = std::make_unique<AlignmentStoreFile>(arguments.state_path, opening, log, arguments.settings.mapping);
+  auto state = std::make_unique<MatchCacheFile>(arguments.state_path, opening, log, arguments.settings.mapping);
   if (!state->warning().empty()) warnings.push_back(state->warning());
   return state;
 }
 
-void print_resumed(const MapArguments& arguments, const AlignmentStoreFile* state) {
+void print_resumed(const MapArguments& arguments, const MatchCacheFile* state) {
   if (!state || !arguments.resume || arguments.verbosity == Verbosity::kQuiet) return;
   print_line("resumed '" + arguments.state_path + "' with " + std::to_string(state->num_resumed()) + " alignments");
 }

@@ -13,10 +13,10 @@ namespace shapemap::cli {
 void check_state(const MapArguments& arguments);
 
 /// Null when no state is wanted. Adds to `warnings` what is wrong with the file.
-std::unique_ptr<AlignmentStoreFile> open_state(const MapArguments& arguments, const Log& log,
-                                               std::vector<std::string>& warnings);
+std::unique_ptr<MatchCacheFile> open_state(const MapArguments& arguments, const Log& log,
+                                           std::vector<std::string>& warnings);
 
 /// How much of the work the state had; nothing is printed unless the run was resumed.
-void print_resumed(const MapArguments& arguments, const AlignmentStoreFile* state);
+void print_resumed(const MapArguments& arguments, const MatchCacheFile* state);
 
 }  // namespace shapemap::cli

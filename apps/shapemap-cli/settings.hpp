@@ -24,7 +24,7 @@ struct MapSettings {
   SelectionOptions selection;
   MappingOptions mapping;
   WallOptions walls;
-  GridMapOptions grid;
+  OccupancyGridOptions grid;
   DrawOptions drawing;
 
   template <class Self, class Visit>

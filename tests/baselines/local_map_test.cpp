@@ -52,10 +52,10 @@ TEST(Beams, StartAtTheLaserAndEndOnWalls) {
   const test::World world = test::uneven_room();
   const Pose2 pose{0.5, -0.4, 0.3};
   test::Scanner scanner;
-  scanner.num_sub_scans = 4;
+  scanner.num_sweeps = 4;
   scanner.view_rad = kPi / 2;
   scanner.num_beams = 90;
-  const Position position = test::scan_of(world, pose, scanner);
+  const Scan position = test::scan_of(world, pose, scanner);
   const std::vector<Beam> beams = beams_of(position, {}, 20.0);
   ASSERT_THAT(beams, SizeIs(360));
   for (const Beam& beam : beams) {

@@ -21,15 +21,15 @@ class Motions : public testing::Test {
  protected:
   Motions() {
     for (int i = 0; i < 6; ++i) {
-      log_.positions.push_back({100.0 + 0.5 * i, {}, std::nullopt, std::nullopt});
+      log_.scans.push_back({100.0 + 0.5 * i, {}, std::nullopt, std::nullopt});
       poses_.push_back({0.3 * i, 0.1 * i * i, wrap_angle(0.9 * i)});
     }
   }
 
   /// A file of the poses of these positions.
   std::string tum(const std::vector<std::size_t>& indices) const {
-    std::vector<PlacedPosition> placed;
-    for (const std::size_t i : indices) placed.push_back({i, log_.positions[i].timestamp_s, poses_[i], {}});
+    std::vector<PlacedScan> placed;
+    for (const std::size_t i : indices) placed.push_back({i, log_.scans[i].timestamp_s, poses_[i], {}});
     return folder_.write("poses.tum", tum_trajectory(placed));
   }
 
@@ -77,7 +77,7 @@ TEST_F(Motions, CovariancesComeFromTheirFile) {
   std::vector<TimedMotion> lines;
   for (std::size_t i = 0; i < 6; ++i) {
     const double variance = 0.01 * static_cast<double>(i);
-    lines.push_back({log_.positions[i].timestamp_s, {7.0, 8.0, 0.5}, variance * Eigen::Matrix3d::Identity(), ""});
+    lines.push_back({log_.scans[i].timestamp_s, {7.0, 8.0, 0.5}, variance * Eigen::Matrix3d::Identity(), ""});
   }
   const std::string path = folder_.write("map.motions", motion_lines(lines));
   const std::vector<Motion> both = motions_for(log_, {}, {tum({0, 1, 2, 3, 4, 5}), path}, options_);
@@ -100,7 +100,7 @@ TEST_F(Motions, ALineThatIsOfNoPositionIsNamed) {
 }
 
 TEST_F(Motions, TimesThatRepeatAreTakenInOrder) {
-  for (Position& position : log_.positions) position.timestamp_s = 5.0;
+  for (Scan& position : log_.scans) position.timestamp_s = 5.0;
   const std::vector<Motion> motions = motions_for(log_, {}, {tum({0, 1, 2, 3, 4, 5}), ""}, options_);
   for (std::size_t i = 1; i < 6; ++i) {
     EXPECT_THAT(motions[i].previous_from_this, test::IsNearPose(way(i - 1, i), 1e-8, 1e-8));

@@ -10,7 +10,7 @@
 namespace shapemap::baselines {
 namespace {
 
-std::vector<Pose2> placed(SlamMethod& method, const std::vector<Position>& scans, const std::vector<Motion>& motions) {
+std::vector<Pose2> placed(SlamMethod& method, const std::vector<Scan>& scans, const std::vector<Motion>& motions) {
   for (std::size_t i = 0; i < scans.size(); ++i) method.add(scans[i], motions[i]);
   return method.map_from_robot();
 }
@@ -53,7 +53,7 @@ TEST(MrptIcp, CorrectsOdometryAndKeepsItForBlindScans) {
   const std::vector<Pose2> truth = test::walk(12, 0.4);
   std::vector<Motion> motions = motions_of(truth, Eigen::Matrix3d::Zero());
   for (Motion& motion : motions) motion.previous_from_this = motion.previous_from_this * Pose2{0.05, -0.04, 0.03};
-  std::vector<Position> scans = test::scans_of(truth);
+  std::vector<Scan> scans = test::scans_of(truth);
   scans.back() = shapemap::test::blind_position();
   const auto icp = make_mrpt_icp({}, {});
   std::vector<Pose2> found = placed(*icp, scans, motions);
@@ -67,12 +67,12 @@ TEST(MrptIcp, CorrectsOdometryAndKeepsItForBlindScans) {
 
 TEST(MrptIcp, TakesAPositionsSubScansAsOne) {
   shapemap::test::Scanner scanner;
-  scanner.num_sub_scans = 4;
+  scanner.num_sweeps = 4;
   scanner.view_rad = 100 * kDegree;
   scanner.num_beams = 100;
   const std::vector<Pose2> truth = test::walk(15);
   const shapemap::test::World world = shapemap::test::cluttered_room(3);
-  std::vector<Position> scans;
+  std::vector<Scan> scans;
   for (const Pose2& pose : truth) scans.push_back(shapemap::test::scan_of(world, pose, scanner));
   const auto icp = make_mrpt_icp({}, {});
   const std::vector<Pose2> found = placed(*icp, scans, std::vector<Motion>(truth.size(), test::nothing_known()));
@@ -93,7 +93,7 @@ TEST(MrptRbpf, UpdatesWithExactlyZeroOdometry) {
 
 TEST(MrptRbpf, TakesTheMotionsCovarianceForItsMotionModel) {
   const std::vector<Pose2> truth = test::walk(6);
-  const std::vector<Position> scans = test::scans_of(truth);
+  const std::vector<Scan> scans = test::scans_of(truth);
   // What is certain is not corrected, whatever the scans say; sure in one direction only, just in that.
   std::vector<Motion> motions = motions_of(truth, Eigen::Matrix3d::Zero());
   for (Motion& motion : motions) motion.previous_from_this = motion.previous_from_this * Pose2{0.1, 0.1, 0.0};
@@ -117,7 +117,7 @@ TEST(MrptRbpf, TakesTheMotionsCovarianceForItsMotionModel) {
 
 TEST(MrptRbpf, SameSeedSamePosesAndAnotherSeedOthers) {
   const std::vector<Pose2> truth = test::walk(6);
-  const std::vector<Position> scans = test::scans_of(truth);
+  const std::vector<Scan> scans = test::scans_of(truth);
   const std::vector<Motion> motions(truth.size(), test::nothing_known());
   const auto with_seed = [&](int seed) { return placed(*make_mrpt_rbpf(small_filter(), seed), scans, motions); };
   const std::vector<Pose2> first = with_seed(7);
@@ -128,7 +128,7 @@ TEST(MrptRbpf, SameSeedSamePosesAndAnotherSeedOthers) {
 
 TEST(MrptRbpf, AddsTheMotionsOfBlindScansToTheNext) {
   const std::vector<Pose2> truth = test::walk(6);
-  std::vector<Position> scans = test::scans_of(truth);
+  std::vector<Scan> scans = test::scans_of(truth);
   scans[2] = scans[3] = scans[5] = shapemap::test::blind_position();
   const Eigen::Matrix3d nearly_certain = test::covariance(0.001, 0.001);
   const auto filter = make_mrpt_rbpf(small_filter(), 1);
@@ -142,7 +142,7 @@ TEST(MrptRbpf, AddsTheMotionsOfBlindScansToTheNext) {
 /// Where odometry is sure and the robot hardly moves, odometry is the answer; it then goes on from there.
 TEST(MrptRbpf, PassesOverScansOfTheSamePlace) {
   const std::vector<Pose2> truth = test::walk(9);
-  const std::vector<Position> scans = test::scans_of(truth);
+  const std::vector<Scan> scans = test::scans_of(truth);
   RbpfOptions options = small_filter();
   options.update_m = 0.25;
   options.update_rad = kPi;
@@ -164,7 +164,7 @@ TEST(MrptRbpf, PassesOverScansOfTheSamePlace) {
 }
 
 TEST(MrptRbpf, StopsBeforeMemoryEnds) {
-  const std::vector<Position> scans = test::scans_of(test::walk(3));
+  const std::vector<Scan> scans = test::scans_of(test::walk(3));
   const auto filter = make_mrpt_rbpf(small_filter(), 1);
   filter->add(scans[0], {});
   filter->add(scans[1], {{0.12, 0.0, 0.0}, test::covariance(0.01, 0.01)});

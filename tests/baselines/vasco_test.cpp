@@ -10,7 +10,7 @@
 namespace shapemap::baselines {
 namespace {
 
-std::vector<Pose2> placed(const std::vector<Position>& scans, const std::vector<Motion>& motions,
+std::vector<Pose2> placed(const std::vector<Scan>& scans, const std::vector<Motion>& motions,
                           const VascoOptions& options = {}) {
   const auto vasco = make_vasco(options, {});
   for (std::size_t i = 0; i < scans.size(); ++i) vasco->add(scans[i], motions[i]);
@@ -34,7 +34,7 @@ TEST(Vasco, FollowsAWalkWithoutOdometry) {
 
 TEST(Vasco, ReachesFartherWithMoreLevels) {
   const std::vector<Pose2> truth{{0.0, 0.0, 0.0}, {0.45, -0.2, 16 * kDegree}};
-  const std::vector<Position> scans = test::scans_of(truth, 2);
+  const std::vector<Scan> scans = test::scans_of(truth, 2);
   const std::vector<Motion> motions(2, Motion{Pose2{}, test::covariance(0.5, 30 * kDegree)});
   VascoOptions options;
   options.levels = 5;
@@ -48,7 +48,7 @@ TEST(Vasco, BelievesOdometryWhereTheScansDoNotHold) {
   // In a bare corridor nothing but the motion tells how far the robot went.
   const std::vector<Pose2> truth{{0.0, 0.0, 0.0}, {0.8, 0.0, 0.0}};
   std::mt19937 rng(1);
-  std::vector<Position> scans;
+  std::vector<Scan> scans;
   for (const Pose2& pose : truth) {
     scans.push_back(shapemap::test::scan_of(shapemap::test::bare_corridor(), pose, shapemap::test::full_circle(), rng));
   }
@@ -67,7 +67,7 @@ TEST(Vasco, ACertainMotionIsKept) {
 }
 
 TEST(Vasco, OfBlindScansKeepsWhatOdometrySays) {
-  std::vector<Position> scans = test::scans_of(test::walk(4));
+  std::vector<Scan> scans = test::scans_of(test::walk(4));
   scans[0] = scans[2] = shapemap::test::blind_position();
   const Motion motion{{0.12, 0.0, 0.1}, test::covariance(0.2, 0.2)};
   const std::vector<Pose2> found = placed(scans, std::vector<Motion>(4, motion));
@@ -77,7 +77,7 @@ TEST(Vasco, OfBlindScansKeepsWhatOdometrySays) {
 }
 
 TEST(Vasco, AJumpInTheOdometryAsksForNoMoreMemory) {
-  const std::vector<Position> scans = test::scans_of(test::walk(3));
+  const std::vector<Scan> scans = test::scans_of(test::walk(3));
   const std::vector<Motion> motions(3, Motion{{1e7, -1e7, 0.0}, test::covariance(1.0, 0.1)});
   const std::vector<Pose2> found = placed(scans, motions);
   EXPECT_NEAR(found[2].x_m, 2e7, 10.0);

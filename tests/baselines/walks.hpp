@@ -24,15 +24,15 @@ inline std::vector<Pose2> walk(std::size_t count, double step_m = 0.12) {
   return poses;
 }
 
-inline std::vector<Position> scans_of(const std::vector<Pose2>& poses, unsigned seed = 4) {
+inline std::vector<Scan> scans_of(const std::vector<Pose2>& poses, unsigned seed = 4) {
   const shapemap::test::World world = shapemap::test::cluttered_room(seed);
   std::mt19937 rng(seed);
-  std::vector<Position> positions;
+  std::vector<Scan> scans;
   for (const Pose2& pose : poses) {
-    positions.push_back(shapemap::test::scan_of(world, pose, shapemap::test::full_circle(), rng));
-    positions.back().timestamp_s = 1e9 + static_cast<double>(positions.size());
+    scans.push_back(shapemap::test::scan_of(world, pose, shapemap::test::full_circle(), rng));
+    scans.back().timestamp_s = 1e9 + static_cast<double>(scans.size());
   }
-  return positions;
+  return scans;
 }
 
 inline Eigen::Matrix3d covariance(double sigma_m, double sigma_rad) {

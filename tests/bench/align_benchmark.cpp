@@ -25,7 +25,7 @@ const Log& demo_log() {
 Shape full_shape(std::size_t position) {
   MappingOptions options;
   options.shape.points = ShapePoints::kBeams;
-  Shape shape = shape_of(demo_log().positions.at(position), options.returns, options.polylines, options.shape);
+  Shape shape = shape_of(demo_log().scans.at(position), options.returns, options.polylines, options.shape);
   for (std::size_t i = 0; shape.size() < kNumPoints; ++i)
     shape.points.push_back(shape.points[shape.size() - 1 - 2 * i]);
   return shape;
@@ -34,9 +34,9 @@ Shape full_shape(std::size_t position) {
 /// The three scans before the query, at their reference poses, in the frame of the latest.
 std::vector<Shape> target_scans() {
   std::vector<Shape> scans;
-  const Pose2 ref_from_map = inverse(demo_log().positions[kQuery - 1].reference_pose.value());
+  const Pose2 ref_from_map = inverse(demo_log().scans[kQuery - 1].reference_pose.value());
   for (std::size_t k = kQuery - 3; k < kQuery; ++k) {
-    scans.push_back(moved(full_shape(k), ref_from_map * demo_log().positions[k].reference_pose.value()));
+    scans.push_back(moved(full_shape(k), ref_from_map * demo_log().scans[k].reference_pose.value()));
   }
   return scans;
 }
@@ -60,7 +60,7 @@ void set_sizes(benchmark::State& state, std::size_t rows, std::size_t columns) {
 void BM_ShapeOfPosition(benchmark::State& state) {
   const MappingOptions options;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(shape_of(demo_log().positions[kQuery], options.returns, options.polylines, options.shape));
+    benchmark::DoNotOptimize(shape_of(demo_log().scans[kQuery], options.returns, options.polylines, options.shape));
   }
 }
 BENCHMARK(BM_ShapeOfPosition)->Unit(benchmark::kMillisecond);

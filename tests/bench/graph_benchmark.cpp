@@ -13,16 +13,16 @@ namespace {
 
 void BM_PlaceSignature(benchmark::State& state) {
   const ScanView view = test::view_from(test::ring_world(1), test::on_ring(3.0));
-  for (auto _ : state) benchmark::DoNotOptimize(place_signature(view));
+  for (auto _ : state) benchmark::DoNotOptimize(place_descriptor(view));
   state.counters["points"] = static_cast<double>(view.size());
 }
 BENCHMARK(BM_PlaceSignature)->Unit(benchmark::kMicrosecond);
 
-PlaceSignature random_signature(std::mt19937& rng) {
+PlaceDescriptor random_signature(std::mt19937& rng) {
   std::uniform_real_distribution<float> unit(0.0F, 0.06F);
-  PlaceSignature signature;
-  for (float& value : signature) value = unit(rng);
-  return signature;
+  PlaceDescriptor descriptor;
+  for (float& value : descriptor) value = unit(rng);
+  return descriptor;
 }
 
 /// What a new scan costs when there are so many.
@@ -54,7 +54,7 @@ struct Ring {
 
 void BM_MapEvidence(benchmark::State& state) {
   const Ring ring;
-  for (auto _ : state) benchmark::DoNotOptimize(MapEvidence(ring.views, {}, 1).of(ring.truth));
+  for (auto _ : state) benchmark::DoNotOptimize(MapScore(ring.views, {}, 1).of(ring.truth));
   state.counters["nodes"] = static_cast<double>(ring.truth.size());
 }
 BENCHMARK(BM_MapEvidence)->Unit(benchmark::kMillisecond);
@@ -62,9 +62,9 @@ BENCHMARK(BM_MapEvidence)->Unit(benchmark::kMillisecond);
 /// The same map again: nothing has to be looked at.
 void BM_MapEvidenceThatIsKnown(benchmark::State& state) {
   const Ring ring;
-  MapEvidence evidence(ring.views, {}, 1);
-  evidence.of(ring.truth);
-  for (auto _ : state) benchmark::DoNotOptimize(evidence.of(ring.truth));
+  MapScore score(ring.views, {}, 1);
+  score.of(ring.truth);
+  for (auto _ : state) benchmark::DoNotOptimize(score.of(ring.truth));
 }
 BENCHMARK(BM_MapEvidenceThatIsKnown)->Unit(benchmark::kMillisecond);
 

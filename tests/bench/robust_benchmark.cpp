@@ -18,15 +18,15 @@ constexpr std::size_t kCoarseStride = 2;
 
 /// Two scans and how they lie.
 struct Pair {
-  Position reference;
-  Position query;
+  Scan reference;
+  Scan query;
   Pose2 ref_from_query;
 };
 
 Pair demo_pair() {
   const Log log = read_log(SHAPEMAP_DEMO_LOG);
-  const Position& reference = log.positions.at(3);
-  const Position& query = log.positions.at(4);
+  const Scan& reference = log.scans.at(3);
+  const Scan& query = log.scans.at(4);
   return {reference, query, inverse(reference.reference_pose.value()) * query.reference_pose.value()};
 }
 
@@ -38,7 +38,7 @@ Pair room_pair(int num_beams) {
   scanner.view_rad = num_beams * (num_beams > 181 ? 0.5 : 1.0) * kDegree;
   scanner.noise_m = 0.01;
   const Pose2 ref_from_query{0.5, -0.3, 0.4};
-  Position reference = test::scan_of(world, {}, scanner, rng);
+  Scan reference = test::scan_of(world, {}, scanner, rng);
   return {std::move(reference), test::scan_of(world, ref_from_query, scanner, rng), ref_from_query};
 }
 
@@ -68,7 +68,7 @@ BENCHMARK(BM_ViewOf)->Apply(all_scans);
 
 void BM_RotationHypotheses(benchmark::State& state) {
   const Views views(pair_of(state));
-  const HypothesisOptions options;
+  const CandidateOptions options;
   for (auto _ : state) {
     benchmark::DoNotOptimize(
         rotation_hypotheses(views.reference.tangents, views.query.tangents, options.rotation_peaks));
@@ -86,8 +86,8 @@ BENCHMARK(BM_VotingOfOneRotation)->Apply(all_scans);
 
 void BM_ShapeOfOneRotation(benchmark::State& state) {
   const Views views(pair_of(state));
-  const ShapeHypotheses shapes(views.reference, views.query);
-  for (auto _ : state) benchmark::DoNotOptimize(shapes.translations(0.4, HypothesisOptions().shape_segments));
+  const LcsHypotheses shapes(views.reference, views.query);
+  for (auto _ : state) benchmark::DoNotOptimize(shapes.translations(0.4, CandidateOptions().shape_segments));
 }
 BENCHMARK(BM_ShapeOfOneRotation)->Apply(all_scans);
 
@@ -105,13 +105,13 @@ void BM_Refinement(benchmark::State& state) {
   const Pair& pair = pair_of(state);
   const Views views(pair);
   const Pose2 start = pair.ref_from_query * Pose2{0.1, 0.1, 2 * kDegree};
-  for (auto _ : state) benchmark::DoNotOptimize(refined_hypothesis(views.reference, views.query, start, {}));
+  for (auto _ : state) benchmark::DoNotOptimize(refined_candidate(views.reference, views.query, start, {}));
 }
 BENCHMARK(BM_Refinement)->Apply(all_scans);
 
 void BM_RobustAlign(benchmark::State& state) {
   const Views views(pair_of(state));
-  for (auto _ : state) benchmark::DoNotOptimize(robust_align(views.reference, views.query, {}));
+  for (auto _ : state) benchmark::DoNotOptimize(match_scans(views.reference, views.query, {}));
 }
 BENCHMARK(BM_RobustAlign)->Apply(all_scans);
 
@@ -119,7 +119,7 @@ BENCHMARK(BM_RobustAlign)->Apply(all_scans);
 void BM_RobustAlignOfDifferentPlaces(benchmark::State& state) {
   const Views views(pair_of(state));
   const ScanView elsewhere = test::view_from(test::strange_place(1), {});
-  for (auto _ : state) benchmark::DoNotOptimize(robust_align(views.reference, elsewhere, {}));
+  for (auto _ : state) benchmark::DoNotOptimize(match_scans(views.reference, elsewhere, {}));
 }
 BENCHMARK(BM_RobustAlignOfDifferentPlaces)->Apply(all_scans);
 

@@ -31,12 +31,12 @@ inline Motion swinging(double yaw_rad, double speed_m_s = 0.0) {
 }
 
 /// One sweep, each of its beams sent from where the laser was at that time.
-inline Position bent_sweep(const World& world, const Motion& world_from_laser, double start_s,
-                           const RollingLaser& laser, std::mt19937& rng) {
+inline Scan bent_sweep(const World& world, const Motion& world_from_laser, double start_s, const RollingLaser& laser,
+                       std::mt19937& rng) {
   std::normal_distribution<double> noise(0.0, 1.0);
-  Position position;
+  Scan position;
   position.timestamp_s = start_s;
-  SubScan scan;
+  Sweep scan;
   scan.angle_step_rad = (laser.clockwise ? -1.0 : 1.0) * laser.view_rad / laser.num_beams;
   scan.first_angle_rad = -0.5 * laser.num_beams * scan.angle_step_rad + 0.5 * scan.angle_step_rad;
   scan.max_range_m = laser.max_range_m;
@@ -46,7 +46,7 @@ inline Position bent_sweep(const World& world, const Motion& world_from_laser, d
         cast_ray_m(world, pose.translation(), pose.theta_rad + scan.beam_angle_rad(static_cast<std::size_t>(b)));
     scan.ranges_m.push_back(static_cast<float>(std::min(range_m + laser.noise_m * noise(rng), laser.max_range_m)));
   }
-  position.sub_scans.push_back(std::move(scan));
+  position.sweeps.push_back(std::move(scan));
   return position;
 }
 
@@ -57,8 +57,8 @@ inline Log bent_log(const World& world, const Motion& world_from_laser, std::siz
   Log log;
   for (std::size_t i = 0; i < num; ++i) {
     const double start_s = static_cast<double>(i) * laser.period_s;
-    log.positions.push_back(bent_sweep(world, world_from_laser, start_s, laser, rng));
-    log.positions.back().reference_pose = world_from_laser(start_s);
+    log.scans.push_back(bent_sweep(world, world_from_laser, start_s, laser, rng));
+    log.scans.back().reference_pose = world_from_laser(start_s);
   }
   return log;
 }
@@ -67,9 +67,9 @@ inline Log bent_log(const World& world, const Motion& world_from_laser, std::siz
 inline double off_the_walls_m(const Log& log, const World& world) {
   double squares_m2 = 0.0;
   std::size_t num = 0;
-  for (const Position& position : log.positions) {
-    for (const SubScan& sub_scan : position.sub_scans) {
-      for (const Return& hit : returns_in_robot(sub_scan, {})) {
+  for (const Scan& position : log.scans) {
+    for (const Sweep& sweep : position.sweeps) {
+      for (const Return& hit : returns_in_robot(sweep, {})) {
         const double off_m = distance_to_walls_m(world, *position.reference_pose * hit.p_in_robot_m);
         squares_m2 += off_m * off_m;
         ++num;

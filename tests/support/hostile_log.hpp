@@ -27,13 +27,13 @@ inline Outcome read_and_map(const std::string& path) {
   try {
     Log log = read_log(path, LogFormat::kAuto, reading);
     summarise(log);
-    log.positions.resize(std::min(log.positions.size(), kStraightened));
+    log.scans.resize(std::min(log.scans.size(), kStraightened));
     MappingOptions options;
     options.run.threads = 1;
     RunObserver observer;
     std::vector<SweepVerdict> verdicts;
     log = straightened(std::move(log), options.returns, options.deskew, 1, 1, observer, verdicts);
-    log.positions.resize(std::min(log.positions.size(), kFirst));
+    log.scans.resize(std::min(log.scans.size(), kFirst));
     map_log(log, options, observer);
     return Outcome::kMapped;
   } catch (const InputError&) {

@@ -26,8 +26,8 @@ inline std::string input_error(const std::string& path, LogFormat format = LogFo
 }
 
 /// A scan whose readings are all different, with two that hit nothing.
-inline SubScan make_scan(std::size_t num_beams, double first_angle_rad, double angle_step_rad) {
-  SubScan scan;
+inline Sweep make_scan(std::size_t num_beams, double first_angle_rad, double angle_step_rad) {
+  Sweep scan;
   scan.first_angle_rad = first_angle_rad;
   scan.angle_step_rad = angle_step_rad;
   scan.max_range_m = 20.0;
@@ -40,17 +40,17 @@ inline SubScan make_scan(std::size_t num_beams, double first_angle_rad, double a
 
 /// Expects the same positions, times and points in the robot's frame.
 inline void expect_same_points(const Log& a, const Log& b, double tolerance_m) {
-  ASSERT_EQ(a.positions.size(), b.positions.size());
-  for (std::size_t i = 0; i < a.positions.size(); ++i) {
+  ASSERT_EQ(a.scans.size(), b.scans.size());
+  for (std::size_t i = 0; i < a.scans.size(); ++i) {
     SCOPED_TRACE("position " + std::to_string(i));
-    const Position& p = a.positions[i];
-    const Position& q = b.positions[i];
+    const Scan& p = a.scans[i];
+    const Scan& q = b.scans[i];
     // MRPT counts time in units of 100 ns.
     ASSERT_NEAR(p.timestamp_s, q.timestamp_s, 2e-7 + 1e-15 * std::abs(p.timestamp_s));
-    ASSERT_EQ(p.sub_scans.size(), q.sub_scans.size());
-    for (std::size_t s = 0; s < p.sub_scans.size(); ++s) {
-      const std::vector<Return> from_a = returns_in_robot(p.sub_scans[s], {});
-      const std::vector<Return> from_b = returns_in_robot(q.sub_scans[s], {});
+    ASSERT_EQ(p.sweeps.size(), q.sweeps.size());
+    for (std::size_t s = 0; s < p.sweeps.size(); ++s) {
+      const std::vector<Return> from_a = returns_in_robot(p.sweeps[s], {});
+      const std::vector<Return> from_b = returns_in_robot(q.sweeps[s], {});
       ASSERT_EQ(from_a.size(), from_b.size());
       double worst_m = 0.0;
       for (std::size_t r = 0; r < from_a.size(); ++r) {

@@ -12,13 +12,12 @@ namespace shapemap::test {
 
 struct PlacedLog {
   Log log;
-  std::vector<PlacedPosition> placed;
+  std::vector<PlacedScan> placed;
 
-  void add(Position position, const Pose2& map_from_robot) {
+  void add(Scan position, const Pose2& map_from_robot) {
     position.timestamp_s = static_cast<double>(placed.size());
-    placed.push_back(
-        {placed.size(), position.timestamp_s, map_from_robot, std::vector<Pose2>(position.sub_scans.size())});
-    log.positions.push_back(std::move(position));
+    placed.push_back({placed.size(), position.timestamp_s, map_from_robot, std::vector<Pose2>(position.sweeps.size())});
+    log.scans.push_back(std::move(position));
   }
 };
 

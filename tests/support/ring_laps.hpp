@@ -17,9 +17,9 @@ namespace shapemap::test {
 
 inline MappingOptions quick_mapping() {
   MappingOptions options;
-  options.robust.matcher.search.hypotheses.rotation_peaks = 4;
-  options.robust.matcher.search.hypotheses.refined = 6;
-  options.robust.matcher.search.hypotheses.kept = 3;
+  options.robust.matcher.search.candidates.rotation_peaks = 4;
+  options.robust.matcher.search.candidates.refined = 6;
+  options.robust.matcher.search.candidates.kept = 3;
   options.robust.matcher.search.voting.peaks = 6;
   options.robust.loop_detection.likely_places = 3;
   options.robust.keyframes.settle_at = 0;
@@ -31,7 +31,7 @@ struct Laps {
   explicit Laps(std::size_t count) : Laps(ring_walk(count, 4)) {}
   explicit Laps(std::vector<Pose2> poses) : truth(std::move(poses)) {
     std::mt19937 rng(7);
-    for (const Pose2& pose : truth) log.positions.push_back(scan_of(ring_world(1), pose, full_circle(), rng));
+    for (const Pose2& pose : truth) log.scans.push_back(scan_of(ring_world(1), pose, full_circle(), rng));
   }
   std::vector<Pose2> truth;
   Log log;
@@ -47,30 +47,30 @@ struct KnownChain {
   KnownChain(const Laps& laps, const std::vector<Pose2>& poses) {
     const MappingOptions options = quick_mapping();
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      auto view = std::make_shared<ScanView>(view_of(laps.log.positions[i], options.returns, options.polylines,
-                                                     options.shape, options.robust.matcher.view));
+      auto view = std::make_shared<ScanView>(
+          view_of(laps.log.scans[i], options.returns, options.polylines, options.shape, options.robust.matcher.view));
       chain.keyframes.push_back({i, 0, std::move(view), {}, {}});
       if (i == 0) continue;
       const Pose2 step = inverse(poses[i - 1]) * poses[i];
-      KeyframeLink link;
-      link.hypotheses = {
-          hypothesis_at(*chain.keyframes[i - 1].view, *chain.keyframes[i].view, step, options.robust.matcher.search)};
-      chain.links.push_back(std::move(link));
-      map.constraints.push_back(link_constraint(chain, i - 1, 0));
+      OdometryEdge link;
+      link.candidates = {
+          candidate_at(*chain.keyframes[i - 1].view, *chain.keyframes[i].view, step, options.robust.matcher.search)};
+      chain.edges.push_back(std::move(link));
+      map.constraints.push_back(edge_constraint(chain, i - 1, 0));
     }
     for (std::size_t i = 0; i + 2 < poses.size(); ++i) {
-      chain.links[i].bonus = no_bonus(chain.links[i], chain.links[i + 1]);
+      chain.edges[i].transition_scores = no_transition_scores(chain.edges[i], chain.edges[i + 1]);
     }
-    choose_hypotheses(chain);
+    choose_candidates(chain);
     map.map_from_keyframe = poses;
-    map.link_choice.assign(chain.links.size(), 0);
-    map.held_by_loops.assign(chain.links.size(), true);
+    map.edge_choice.assign(chain.edges.size(), 0);
+    map.loop_constrained.assign(chain.edges.size(), true);
     map.component.assign(poses.size(), 0);
   }
   explicit KnownChain(const Laps& laps) : KnownChain(laps, laps.truth) {}
 
-  KeyframeChain chain;
-  KeyframeMap map;
+  KeyframeGraph chain;
+  OptimizedMap map;
 };
 
 }  // namespace shapemap::test

@@ -74,15 +74,15 @@ inline Eigen::Matrix3d covariance_of(double deviation_m, double deviation_rad) {
 }
 
 /// The chain that a robot makes that errs by `drift_rad` to the left at each step.
-inline std::vector<ChainLink> drifting_links(const std::vector<Pose2>& truth, double drift_rad, unsigned seed = 3) {
+inline std::vector<EdgeChoices> drifting_links(const std::vector<Pose2>& truth, double drift_rad, unsigned seed = 3) {
   std::mt19937 rng(seed);
-  std::vector<ChainLink> links(truth.size() - 1);
-  for (std::size_t i = 0; i < links.size(); ++i) {
+  std::vector<EdgeChoices> edges(truth.size() - 1);
+  for (std::size_t i = 0; i < edges.size(); ++i) {
     const Pose2 step = inverse(truth[i]) * truth[i + 1] * random_pose(rng, 0.02, 0.1 * kDegree);
-    links[i].alternatives = {{step * Pose2{0.0, 0.0, drift_rad}, covariance_of(0.03, 1 * kDegree), 0.0}};
-    links[i].probability = 0.99;
+    edges[i].candidates = {{step * Pose2{0.0, 0.0, drift_rad}, covariance_of(0.03, 1 * kDegree), 0.0}};
+    edges[i].probability = 0.99;
   }
-  return links;
+  return edges;
 }
 
 /// Nodes `a`, `a` + 1, ... to nodes `b`, `b` + 1, ..., at the places that `truth` has moved by `wrong`.
@@ -116,9 +116,9 @@ inline double worst_off_m(const std::vector<Pose2>& map_from_node, const std::ve
 }
 
 /// Node after node by the first alternatives of `links`.
-inline std::vector<Pose2> chained(const std::vector<ChainLink>& links, const Pose2& first = {}) {
+inline std::vector<Pose2> chained(const std::vector<EdgeChoices>& edges, const Pose2& first = {}) {
   std::vector<Pose2> poses{first};
-  for (const ChainLink& link : links) poses.push_back(poses.back() * link.alternatives.front().a_from_b);
+  for (const EdgeChoices& link : edges) poses.push_back(poses.back() * link.candidates.front().a_from_b);
   return poses;
 }
 

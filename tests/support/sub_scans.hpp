@@ -14,7 +14,7 @@ inline constexpr int kTurns = 4;
 
 struct Stops {
   std::vector<Pose2> truth;
-  std::vector<std::vector<Pose2>> robot_from_sub_scan;  ///< the errors
+  std::vector<std::vector<Pose2>> robot_from_sweep;  ///< the errors
   Log log;
 };
 
@@ -26,31 +26,31 @@ inline Stops stops_on_ring(std::size_t count, double apart_m, unsigned seed, dou
   Stops stops;
   for (std::size_t i = 0; i < count; ++i) {
     stops.truth.push_back(on_ring(apart_m * static_cast<double>(i)) * random_pose(rng, 0.1, 0.5));
-    stops.robot_from_sub_scan.emplace_back();
-    Position position;
+    stops.robot_from_sweep.emplace_back();
+    Scan position;
     position.timestamp_s = static_cast<double>(i);
     for (int turn = 0; turn < kTurns; ++turn) {
       const Pose2 nominal{0.0, 0.0, turn * kPi / 2};
       const Pose2 error = random_pose(rng, error_m, error_rad);
-      stops.robot_from_sub_scan.back().push_back(error);
-      SubScan sub_scan = scan_of(world, stops.truth.back() * error * nominal, scanner, rng).sub_scans.front();
-      sub_scan.nominal_heading_rad = nominal.theta_rad;
-      position.sub_scans.push_back(std::move(sub_scan));
+      stops.robot_from_sweep.back().push_back(error);
+      Sweep sweep = scan_of(world, stops.truth.back() * error * nominal, scanner, rng).sweeps.front();
+      sweep.nominal_heading_rad = nominal.theta_rad;
+      position.sweeps.push_back(std::move(sweep));
     }
-    stops.log.positions.push_back(std::move(position));
+    stops.log.scans.push_back(std::move(position));
   }
   return stops;
 }
 
 /// Root mean square of how much sub-scans are turned wrongly, apart from a turn that all of them share.
 inline double heading_rms_rad(const Stops& stops, const std::vector<Pose2>& map_from_robot,
-                              const std::vector<std::vector<Pose2>>& robot_from_sub_scan) {
+                              const std::vector<std::vector<Pose2>>& robot_from_sweep) {
   std::vector<double> off_rad;
   double sum_rad = 0.0;
   for (std::size_t i = 0; i < stops.truth.size(); ++i) {
-    for (std::size_t s = 0; s < robot_from_sub_scan[i].size(); ++s) {
-      const Pose2 found = map_from_robot[i] * robot_from_sub_scan[i][s];
-      const Pose2 truth = stops.truth[i] * stops.robot_from_sub_scan[i][s];
+    for (std::size_t s = 0; s < robot_from_sweep[i].size(); ++s) {
+      const Pose2 found = map_from_robot[i] * robot_from_sweep[i][s];
+      const Pose2 truth = stops.truth[i] * stops.robot_from_sweep[i][s];
       off_rad.push_back(
           wrap_angle(found.theta_rad - truth.theta_rad - map_from_robot[0].theta_rad + stops.truth[0].theta_rad));
       sum_rad += off_rad.back();

@@ -92,33 +92,33 @@ struct Scanner {
   int num_beams = 720;        ///< of one sub-scan
   double view_rad = 2 * kPi;  ///< of one sub-scan
   double noise_m = 0.0;       ///< standard deviation of a range
-  int num_sub_scans = 1;      ///< spread evenly over a full turn
+  int num_sweeps = 1;         ///< spread evenly over a full turn
   double max_range_m = 20.0;
 };
 
 /// What the scanner sees from `world_from_robot`.
-inline Position scan_of(const World& world, const Pose2& world_from_robot, const Scanner& scanner, std::mt19937& rng) {
+inline Scan scan_of(const World& world, const Pose2& world_from_robot, const Scanner& scanner, std::mt19937& rng) {
   std::normal_distribution<double> noise(0.0, 1.0);
-  Position position;
-  for (int s = 0; s < scanner.num_sub_scans; ++s) {
-    SubScan sub_scan;
-    sub_scan.angle_step_rad = scanner.view_rad / scanner.num_beams;
-    sub_scan.first_angle_rad = -scanner.view_rad / 2 + sub_scan.angle_step_rad / 2;
-    sub_scan.max_range_m = scanner.max_range_m;
-    sub_scan.nominal_heading_rad = 2 * kPi * s / scanner.num_sub_scans;
+  Scan position;
+  for (int s = 0; s < scanner.num_sweeps; ++s) {
+    Sweep sweep;
+    sweep.angle_step_rad = scanner.view_rad / scanner.num_beams;
+    sweep.first_angle_rad = -scanner.view_rad / 2 + sweep.angle_step_rad / 2;
+    sweep.max_range_m = scanner.max_range_m;
+    sweep.nominal_heading_rad = 2 * kPi * s / scanner.num_sweeps;
     for (int b = 0; b < scanner.num_beams; ++b) {
-      const double angle_rad = world_from_robot.theta_rad + sub_scan.nominal_heading_rad +
-                               sub_scan.beam_angle_rad(static_cast<std::size_t>(b));
+      const double angle_rad =
+          world_from_robot.theta_rad + sweep.nominal_heading_rad + sweep.beam_angle_rad(static_cast<std::size_t>(b));
       const double range_m = cast_ray_m(world, world_from_robot.translation(), angle_rad);
       const double read_m = std::min(range_m + scanner.noise_m * noise(rng), scanner.max_range_m);
-      sub_scan.ranges_m.push_back(static_cast<float>(read_m));
+      sweep.ranges_m.push_back(static_cast<float>(read_m));
     }
-    position.sub_scans.push_back(std::move(sub_scan));
+    position.sweeps.push_back(std::move(sweep));
   }
   return position;
 }
 
-inline Position scan_of(const World& world, const Pose2& world_from_robot, const Scanner& scanner = {}) {
+inline Scan scan_of(const World& world, const Pose2& world_from_robot, const Scanner& scanner = {}) {
   std::mt19937 rng(1);
   return scan_of(world, world_from_robot, scanner, rng);
 }
@@ -150,7 +150,7 @@ inline MappingOptions paper_options() {
   return options;
 }
 
-inline Shape shape_of(const Position& position, const MappingOptions& options) {
+inline Shape shape_of(const Scan& position, const MappingOptions& options) {
   return shapemap::shape_of(position, options.returns, options.polylines, options.shape);
 }
 

@@ -60,7 +60,7 @@ inline Scanner full_circle() {
   return scanner;
 }
 
-inline ScanView view_of(const Position& position) { return shapemap::view_of(position, {}, {}, {}, {}); }
+inline ScanView view_of(const Scan& position) { return shapemap::view_of(position, {}, {}, {}, {}); }
 
 inline ScanView view_from(const World& world, const Pose2& world_from_robot, const Scanner& scanner = full_circle(),
                           unsigned seed = 1) {
@@ -69,15 +69,15 @@ inline ScanView view_from(const World& world, const Pose2& world_from_robot, con
 }
 
 /// What a robot sees that stands there with its laser turned by `angle_rad` more: exactly the same points, turned.
-inline Position turned(Position position, double angle_rad) {
-  for (SubScan& sub_scan : position.sub_scans) sub_scan.nominal_heading_rad += angle_rad;
+inline Scan turned(Scan position, double angle_rad) {
+  for (Sweep& sweep : position.sweeps) sweep.nominal_heading_rad += angle_rad;
   return position;
 }
 
 /// Nothing but beams without a return.
-inline Position blind_position(int num_beams = 181) {
-  Position position = scan_of(uneven_room(), {}, {num_beams, kPi, 0.0, 1, 20.0});
-  for (float& range_m : position.sub_scans[0].ranges_m) range_m = std::numeric_limits<float>::quiet_NaN();
+inline Scan blind_position(int num_beams = 181) {
+  Scan position = scan_of(uneven_room(), {}, {num_beams, kPi, 0.0, 1, 20.0});
+  for (float& range_m : position.sweeps[0].ranges_m) range_m = std::numeric_limits<float>::quiet_NaN();
   return position;
 }
 

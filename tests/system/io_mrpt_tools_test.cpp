@@ -33,13 +33,13 @@ std::string output_of(const TempFolder& folder, const std::string& command) {
 Log four_sub_scans() {
   Log log;
   for (int i = 0; i < 5; ++i) {
-    Position position;
+    Scan position;
     position.timestamp_s = 1000.5 + i;
     for (int turn = 0; turn < 4; ++turn) {
-      position.sub_scans.push_back(make_scan(401, -50 * kDegree, 0.25 * kDegree));
-      position.sub_scans.back().nominal_heading_rad = turn * 90 * kDegree;
+      position.sweeps.push_back(make_scan(401, -50 * kDegree, 0.25 * kDegree));
+      position.sweeps.back().nominal_heading_rad = turn * 90 * kDegree;
     }
-    log.positions.push_back(position);
+    log.scans.push_back(position);
   }
   return log;
 }
@@ -72,12 +72,12 @@ TEST(MrptTools, RawlogEditSeesOurPosesAsOdometry) {
 /// nearly so. Times that say nothing become the index, and such that hardly differ may stay; the log's own take their
 /// place.
 void restore_timestamps(const Log& ours, Log& theirs) {
-  ASSERT_EQ(ours.positions.size(), theirs.positions.size());
-  for (std::size_t i = 1; i < ours.positions.size(); ++i) {
-    EXPECT_GT(theirs.positions[i].timestamp_s, theirs.positions[i - 1].timestamp_s);
+  ASSERT_EQ(ours.scans.size(), theirs.scans.size());
+  for (std::size_t i = 1; i < ours.scans.size(); ++i) {
+    EXPECT_GT(theirs.scans[i].timestamp_s, theirs.scans[i - 1].timestamp_s);
   }
-  for (std::size_t i = 0; i < ours.positions.size(); ++i) {
-    theirs.positions[i].timestamp_s = ours.positions[i].timestamp_s;
+  for (std::size_t i = 0; i < ours.scans.size(); ++i) {
+    theirs.scans[i].timestamp_s = ours.scans[i].timestamp_s;
   }
 }
 
@@ -93,18 +93,18 @@ TEST(MrptTools, Carmen2rawlogOfRobotLaserLinesIsReadBackEqual) {
   const TempFolder folder;
   Log log;
   for (int i = 0; i < 3; ++i) {
-    Position position;
+    Scan position;
     position.timestamp_s = 100.25 + i;
-    position.sub_scans = {make_scan(181, -90 * kDegree, kDegree)};
-    position.sub_scans[0].max_range_m = 20.0 + i;  // no single maximum: cannot be FLASER
-    log.positions.push_back(position);
+    position.sweeps = {make_scan(181, -90 * kDegree, kDegree)};
+    position.sweeps[0].max_range_m = 20.0 + i;  // no single maximum: cannot be FLASER
+    log.scans.push_back(position);
   }
   write_log(log, folder.path("in.log"), LogFormat::kCarmen);
   const Log ours = read_log(folder.path("in.log"));
   Log theirs = carmen2rawlog(folder, folder.path("in.log"));
   restore_timestamps(ours, theirs);
-  ASSERT_EQ(ours.positions.at(0).sub_scans.at(0).sensor_label, "ROBOTLASER1");
-  EXPECT_EQ(theirs.positions.at(0).sub_scans.at(0).sensor_label, "ROBOTLASER1");
+  ASSERT_EQ(ours.scans.at(0).sweeps.at(0).sensor_label, "ROBOTLASER1");
+  EXPECT_EQ(theirs.scans.at(0).sweeps.at(0).sensor_label, "ROBOTLASER1");
   // 1e-4: MRPT keeps the field of view as a float.
   expect_same_points(ours, theirs, 1e-4);
 }
@@ -120,10 +120,10 @@ TEST(MrptTools, Carmen2rawlogOfFlaserLinesIsReadBackWithItsAngles) {
     SCOPED_TRACE(std::to_string(num_beams) + " beams");
     Log log;
     for (int i = 0; i < 3; ++i) {
-      Position position;
+      Scan position;
       position.timestamp_s = 100.25 + i;
-      position.sub_scans = {make_scan(num_beams, -90 * kDegree, step_deg * kDegree)};
-      log.positions.push_back(position);
+      position.sweeps = {make_scan(num_beams, -90 * kDegree, step_deg * kDegree)};
+      log.scans.push_back(position);
     }
     write_log(log, folder.path("in.log"), LogFormat::kCarmen);
     const std::string resolution = "PARAM laser_front_laser_resolution " + std::to_string(step_deg) + " h 0\n";
@@ -131,11 +131,11 @@ TEST(MrptTools, Carmen2rawlogOfFlaserLinesIsReadBackWithItsAngles) {
     const Log ours = read_log(path);
     Log theirs = carmen2rawlog(folder, path);
     restore_timestamps(ours, theirs);
-    ASSERT_EQ(ours.positions.size(), 3U);
-    ASSERT_EQ(theirs.positions.size(), 3U);
+    ASSERT_EQ(ours.scans.size(), 3U);
+    ASSERT_EQ(theirs.scans.size(), 3U);
     for (std::size_t i = 0; i < 3; ++i) {
-      const SubScan& our_scan = ours.positions[i].sub_scans.at(0);
-      const SubScan& their_scan = theirs.positions[i].sub_scans.at(0);
+      const Sweep& our_scan = ours.scans[i].sweeps.at(0);
+      const Sweep& their_scan = theirs.scans[i].sweeps.at(0);
       EXPECT_EQ(their_scan.sensor_label, "FLASER");
       EXPECT_EQ(their_scan.max_range_m, our_scan.max_range_m);
       const double aperture_rad = static_cast<double>(num_beams) * step_deg * kDegree;

@@ -17,7 +17,7 @@ const std::filesystem::path kSamples = "/usr/share/mrpt/datasets";
 
 struct Sample {
   const char* name;
-  std::size_t num_positions;
+  std::size_t num_scans;
   std::size_t num_beams;
   double first_timestamp_s;
   double duration_s;
@@ -38,11 +38,11 @@ TEST_P(Samples, AreReadWhole) {
   EXPECT_TRUE(log.warnings.empty());
   const LogSummary summary = summarise(log);
   EXPECT_EQ(summary.format, "rawlog");
-  EXPECT_EQ(summary.num_positions, expected.num_positions);
-  EXPECT_NEAR(log.positions.front().timestamp_s, expected.first_timestamp_s, 1e-6);
+  EXPECT_EQ(summary.num_scans, expected.num_scans);
+  EXPECT_NEAR(log.scans.front().timestamp_s, expected.first_timestamp_s, 1e-6);
   EXPECT_NEAR(summary.duration_s, expected.duration_s, 1e-6);
   ASSERT_EQ(summary.sensors.size(), 1U);
-  EXPECT_EQ(summary.sensors[0].num_sub_scans, expected.num_positions);
+  EXPECT_EQ(summary.sensors[0].num_sweeps, expected.num_scans);
   EXPECT_EQ(summary.sensors[0].most_beams, expected.num_beams);
   EXPECT_NEAR(summary.sensors[0].fov_rad, kPi, 1e-6);
   EXPECT_EQ(summary.sensors[0].max_range_m, 80.0);
@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(MrptCommon, Samples,
 
 struct CarmenSample {
   const char* name;
-  std::size_t num_positions;
+  std::size_t num_scans;
   std::size_t num_beams;
   double step_deg;
   double longest_return_m;
@@ -90,7 +90,7 @@ TEST_P(CarmenSamples, AreReadWhole) {
   EXPECT_LE(log.warnings.size(), 1U);
   const LogSummary summary = summarise(log);
   EXPECT_EQ(summary.format, "carmen");
-  EXPECT_EQ(summary.num_positions, expected.num_positions);
+  EXPECT_EQ(summary.num_scans, expected.num_scans);
   ASSERT_EQ(summary.sensors.size(), 1U);
   EXPECT_EQ(summary.sensors[0].most_beams, expected.num_beams);
   EXPECT_NEAR(summary.sensors[0].fov_rad, static_cast<double>(expected.num_beams - 1) * expected.step_deg * kDegree,
@@ -119,7 +119,7 @@ TEST(BareSamples, AreReadWithTheirGeometryGiven) {
   LogReadOptions options;
   options.fov_rad = 240 * kDegree;
   options.range_unit = RangeUnit::kMillimetre;
-  EXPECT_EQ(read_log(path.string(), LogFormat::kAuto, options).positions.size(), 756U);
+  EXPECT_EQ(read_log(path.string(), LogFormat::kAuto, options).scans.size(), 756U);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ class Part {
         threads_(threads),
         observer_(observer) {}
 
-  SweepVerdict straighten(std::vector<Position>& positions) {
+  SweepVerdict straighten(std::vector<Scan>& scans) {
     verdict_.period_s = usual_period_s(log_, part_.first, part_.last);
     if (!(verdict_.period_s >= kShortestPeriod_s && verdict_.period_s <= kLongestPeriod_s)) return verdict_;
     const double told_s = told_sweep_time_s(log_, part_.first, part_.last);
@@ -71,7 +71,7 @@ class Part {
     verdict_.straightened = true;
     verdict_.sweep_time_s = timing.sweep_time_s;
     verdict_.told = timing.told;
-    for (const SweepRun& run : runs) straighten_run(run, timing, positions);
+    for (const SweepRun& run : runs) straighten_run(run, timing, scans);
     verdict_.text = "sweeps of " + seconds_text(std::abs(timing.sweep_time_s)) + " straightened";
     if (verdict_.num_judged > 0) {
       std::ostringstream share;
@@ -113,8 +113,8 @@ class Part {
     return best;
   }
 
-  void straighten_run(const SweepRun& run, const BeamTiming& timing, std::vector<Position>& positions) {
-    const std::vector<Sweep> sweeps = timed_sweeps(log_, run.first, run.last, timing, returns_, kPoints);
+  void straighten_run(const SweepRun& run, const BeamTiming& timing, std::vector<Scan>& scans) {
+    const std::vector<TimedSweep> sweeps = timed_sweeps(log_, run.first, run.last, timing, returns_, kPoints);
     const SweepMotion motion = sweep_motion(sweeps, verdict_.period_s, threads_, [&](std::size_t done) {
       observer_.on_progress(run.first - part_.first + done, part_.last - part_.first);
       return observer_.keep_going();
@@ -127,7 +127,7 @@ class Part {
         parts[i].num_left = 1;
         return;
       }
-      straighten_position(sweeps[i].stamp_s, motion.trajectory, timing, positions[run.first + i], parts[i]);
+      straighten_position(sweeps[i].stamp_s, motion.trajectory, timing, scans[run.first + i], parts[i]);
     });
     for (const SweepVerdict& part : parts) {
       verdict_.num_sweeps += part.num_sweeps;
@@ -136,23 +136,22 @@ class Part {
     }
   }
 
-  void straighten_position(double stamp_s, const SweepTrajectory& trajectory, const BeamTiming& timing,
-                           Position& position, SweepVerdict& verdict) const {
+  void straighten_position(double stamp_s, const SweepTrajectory& trajectory, const BeamTiming& timing, Scan& position,
+                           SweepVerdict& verdict) const {
     const Pose2 stamp_from_map = inverse(trajectory.pose_at(stamp_s));
-    const auto motion_of = [&](const SubScan& sub_scan) {
-      return [&](std::size_t beam) {
-        return stamp_from_map * trajectory.pose_at(stamp_s + timing.beam_s(sub_scan, beam));
-      };
+    const auto motion_of = [&](const Sweep& sweep) {
+      return
+          [&](std::size_t beam) { return stamp_from_map * trajectory.pose_at(stamp_s + timing.beam_s(sweep, beam)); };
     };
     double bent_m = 0.0;
-    for (const SubScan& sub_scan : position.sub_scans) {
-      bent_m = std::max(bent_m, most_bent_m(sub_scan, returns_, motion_of(sub_scan)));
+    for (const Sweep& sweep : position.sweeps) {
+      bent_m = std::max(bent_m, most_bent_m(sweep, returns_, motion_of(sweep)));
     }
     if (bent_m < kStraight_m) return;
-    for (SubScan& sub_scan : position.sub_scans) {
-      SubScan straight = unbent(sub_scan, returns_, motion_of(sub_scan));
-      verdict.num_beams_twice += sub_scan.ranges_m.size() - straight.ranges_m.size();
-      sub_scan = std::move(straight);
+    for (Sweep& sweep : position.sweeps) {
+      Sweep straight = unbent(sweep, returns_, motion_of(sweep));
+      verdict.num_beams_twice += sweep.ranges_m.size() - straight.ranges_m.size();
+      sweep = std::move(straight);
     }
     verdict.num_sweeps = 1;
   }
@@ -176,7 +175,7 @@ Log straightened(Log log, const ReturnOptions& returns, const DeskewOptions& opt
   for (const LogPart& part : parts_of(log)) {
     verdicts.emplace_back();
     if (options.mode == Deskew::kOff) continue;
-    verdicts.back() = Part(log, part, returns, options, every, threads, observer).straighten(log.positions);
+    verdicts.back() = Part(log, part, returns, options, every, threads, observer).straighten(log.scans);
   }
   return log;
 }

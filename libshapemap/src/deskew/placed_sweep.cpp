@@ -66,7 +66,7 @@ PointIndex::Neighbour SweepNeighbours::nearest(const Point2& p_m, double gate_m)
   return near;
 }
 
-bool is_wild(const Sweep& sweep, const SweepTrajectory& trajectory) {
+bool is_wild(const TimedSweep& sweep, const SweepTrajectory& trajectory) {
   const Eigen::Vector3d moved = trajectory.at(sweep.last_s) - trajectory.at(sweep.first_s);
   if (sweep.last_s == sweep.first_s) return false;
   // Written so that NaN is wild.
@@ -74,7 +74,7 @@ bool is_wild(const Sweep& sweep, const SweepTrajectory& trajectory) {
            moved.head<2>().norm() < std::max(kMostBent * sweep.usual_range_m, kSurfaceGap_m));
 }
 
-PlacedSweep placed_sweep(const Sweep& sweep, const SweepTrajectory& trajectory) {
+PlacedSweep placed_sweep(const TimedSweep& sweep, const SweepTrajectory& trajectory) {
   PlacedSweep placed;
   const std::size_t num = sweep.points.size();
   placed.p_m.reserve(num);

@@ -19,7 +19,7 @@ struct TimedPoint {
 };
 
 /// All hits of one position of the log.
-struct Sweep {
+struct TimedSweep {
   double stamp_s = 0.0;
   double first_s = 0.0;  ///< of its beams
   double last_s = 0.0;
@@ -30,7 +30,7 @@ struct Sweep {
 
 /// Whether a trajectory bends a sweep so much that what it shows is no place: a motion against the beams, as fast as
 /// they go round, would lay all of them on one line, and any scans would go together.
-bool is_wild(const Sweep& sweep, const SweepTrajectory& trajectory);
+bool is_wild(const TimedSweep& sweep, const SweepTrajectory& trajectory);
 
 /// A sweep as a trajectory places it: straight.
 struct PlacedSweep {
@@ -38,7 +38,7 @@ struct PlacedSweep {
   std::vector<Point2> normals;  ///< of the surface; zero where its neighbours do not tell
   PointIndex index{{}};
 };
-PlacedSweep placed_sweep(const Sweep& sweep, const SweepTrajectory& trajectory);
+PlacedSweep placed_sweep(const TimedSweep& sweep, const SweepTrajectory& trajectory);
 
 /// Finds the nearest of a sweep's points for one point after the other: what was found last is near the next.
 class SweepNeighbours {

@@ -44,7 +44,7 @@ constexpr SweepFitOptions kFinish{0.12, 0.08, 3, 2e-4, 1, 1};
 
 class Chain {
  public:
-  Chain(const std::vector<Sweep>& sweeps, double period_s)
+  Chain(const std::vector<TimedSweep>& sweeps, double period_s)
       : sweeps_(sweeps),
         period_s_(period_s),
         trajectory_(first_s(sweeps), last_s(sweeps), period_s / kKnotsPerPeriod) {}
@@ -199,15 +199,15 @@ class Chain {
     starts.resize(std::min(starts.size(), num));
   }
 
-  static double first_s(const std::vector<Sweep>& sweeps) {
+  static double first_s(const std::vector<TimedSweep>& sweeps) {
     double first_s = sweeps.front().first_s;
-    for (const Sweep& sweep : sweeps) first_s = std::min({first_s, sweep.first_s, sweep.stamp_s});
+    for (const TimedSweep& sweep : sweeps) first_s = std::min({first_s, sweep.first_s, sweep.stamp_s});
     return first_s;
   }
 
-  static double last_s(const std::vector<Sweep>& sweeps) {
+  static double last_s(const std::vector<TimedSweep>& sweeps) {
     double last_s = sweeps.front().last_s;
-    for (const Sweep& sweep : sweeps) last_s = std::max({last_s, sweep.last_s, sweep.stamp_s});
+    for (const TimedSweep& sweep : sweeps) last_s = std::max({last_s, sweep.last_s, sweep.stamp_s});
     return last_s;
   }
 
@@ -243,7 +243,7 @@ class Chain {
     return recent[num / 2];
   }
 
-  const std::vector<Sweep>& sweeps_;
+  const std::vector<TimedSweep>& sweeps_;
   double period_s_;
   SweepTrajectory trajectory_;
   std::vector<double> usual_m_;
@@ -251,7 +251,7 @@ class Chain {
 
 }  // namespace
 
-SweepMotion sweep_motion(const std::vector<Sweep>& sweeps, double period_s, int threads,
+SweepMotion sweep_motion(const std::vector<TimedSweep>& sweeps, double period_s, int threads,
                          const std::function<bool(std::size_t done)>& keep_going) {
   const auto check = [&](std::size_t done) {
     if (keep_going && !keep_going(done)) throw Interrupted();
@@ -283,7 +283,7 @@ SweepMotion sweep_motion(const std::vector<Sweep>& sweeps, double period_s, int 
   return motion;
 }
 
-ShortMotion short_motion(const std::vector<Sweep>& sweeps, double period_s) {
+ShortMotion short_motion(const std::vector<TimedSweep>& sweeps, double period_s) {
   Chain chain(sweeps, period_s);
   const double misfit_m = chain.start(sweeps.size(), kQuickRates, kQuickStarts);
   return {chain.trajectory(), misfit_m};

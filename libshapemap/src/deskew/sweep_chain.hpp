@@ -18,7 +18,7 @@ struct SweepMotion {
 };
 
 /// `keep_going` is told how many sweeps are done, and asked whether to go on; false ends it with Interrupted.
-SweepMotion sweep_motion(const std::vector<Sweep>& sweeps, double period_s, int threads,
+SweepMotion sweep_motion(const std::vector<TimedSweep>& sweeps, double period_s, int threads,
                          const std::function<bool(std::size_t done)>& keep_going);
 
 /// The same of a few sweeps, by a search that is made to be quick.
@@ -26,6 +26,6 @@ struct ShortMotion {
   SweepTrajectory trajectory;
   double misfit_m = 0.0;  ///< the mean of all that follow each other
 };
-ShortMotion short_motion(const std::vector<Sweep>& sweeps, double period_s);
+ShortMotion short_motion(const std::vector<TimedSweep>& sweeps, double period_s);
 
 }  // namespace shapemap

@@ -32,7 +32,7 @@ struct Linearised {
   std::vector<Point2> turned_m;  ///< from the robot, in the map's directions
 };
 
-Linearised linearised(const Sweep& sweep, const SweepTrajectory& trajectory) {
+Linearised linearised(const TimedSweep& sweep, const SweepTrajectory& trajectory) {
   Linearised result;
   result.placed = placed_sweep(sweep, trajectory);
   result.supports.reserve(sweep.points.size());
@@ -127,7 +127,7 @@ void add_partners(const Linearised& from, const Linearised& to, double gate_m, s
 
 class Fit {
  public:
-  Fit(const std::vector<Sweep>& sweeps, std::size_t first, std::size_t last, std::size_t first_free,
+  Fit(const std::vector<TimedSweep>& sweeps, std::size_t first, std::size_t last, std::size_t first_free,
       const SweepFitOptions& options, SweepTrajectory& trajectory)
       : sweeps_(sweeps), first_(first), last_(last), options_(options), trajectory_(trajectory) {
     begin_ = trajectory.support(sweeps[first].first_s).first;
@@ -222,7 +222,7 @@ class Fit {
     }
   }
 
-  const std::vector<Sweep>& sweeps_;
+  const std::vector<TimedSweep>& sweeps_;
   std::size_t first_;
   std::size_t last_;
   const SweepFitOptions& options_;
@@ -234,7 +234,7 @@ class Fit {
 
 }  // namespace
 
-void fit_sweeps(const std::vector<Sweep>& sweeps, std::size_t first, std::size_t last, std::size_t first_free,
+void fit_sweeps(const std::vector<TimedSweep>& sweeps, std::size_t first, std::size_t last, std::size_t first_free,
                 const SweepFitOptions& options, SweepTrajectory& trajectory) {
   Fit fit(sweeps, first, last, first_free, options, trajectory);
   double gate_m = options.first_gate_m;

@@ -20,7 +20,7 @@ struct SweepFitOptions {
 
 /// Moves `trajectory` so that the points of each of the sweeps [first, last) lie on the surfaces that its neighbours
 /// saw; what moves is what these sweeps depend on, but for control points below `first_free`.
-void fit_sweeps(const std::vector<Sweep>& sweeps, std::size_t first, std::size_t last, std::size_t first_free,
+void fit_sweeps(const std::vector<TimedSweep>& sweeps, std::size_t first, std::size_t last, std::size_t first_free,
                 const SweepFitOptions& options, SweepTrajectory& trajectory);
 
 }  // namespace shapemap

@@ -5,14 +5,14 @@
 
 namespace shapemap {
 
-std::vector<SweepPoint> sweep_points(const Position& position, const ReturnOptions& options, std::size_t max_points) {
+std::vector<SweepPoint> sweep_points(const Scan& position, const ReturnOptions& options, std::size_t max_points) {
   std::size_t num_beams = 0;
-  for (const SubScan& sub_scan : position.sub_scans) num_beams += sub_scan.ranges_m.size();
+  for (const Sweep& sweep : position.sweeps) num_beams += sweep.ranges_m.size();
   const std::size_t step = std::max<std::size_t>(1, (num_beams + max_points / 2) / max_points);
   std::vector<SweepPoint> points;
-  points.reserve(num_beams / step + position.sub_scans.size());
-  for (std::size_t s = 0; s < position.sub_scans.size(); ++s) {
-    std::vector<Return> returns = returns_in_robot(position.sub_scans[s], options);
+  points.reserve(num_beams / step + position.sweeps.size());
+  for (std::size_t s = 0; s < position.sweeps.size(); ++s) {
+    std::vector<Return> returns = returns_in_robot(position.sweeps[s], options);
     std::sort(returns.begin(), returns.end(), [](const Return& a, const Return& b) { return a.beam < b.beam; });
     bool begins_line = true;
     for (const Return& hit : returns) {

@@ -26,26 +26,26 @@ double median_of(std::vector<double> values) {
 }
 
 /// Whether the log says of a beam that it was sent long before or after its sweep: that is no time to go by.
-bool has_odd_times(const Position& position, double period_s) {
-  for (const SubScan& sub_scan : position.sub_scans) {
-    for (std::size_t beam = 0; beam < sub_scan.ranges_m.size(); ++beam) {
-      if (!(std::abs(sub_scan.beam_time_s(beam)) <= kOddTime * period_s)) return true;
+bool has_odd_times(const Scan& position, double period_s) {
+  for (const Sweep& sweep : position.sweeps) {
+    for (std::size_t beam = 0; beam < sweep.ranges_m.size(); ++beam) {
+      if (!(std::abs(sweep.beam_time_s(beam)) <= kOddTime * period_s)) return true;
     }
   }
   return false;
 }
 
 /// What the beams of the widest sub-scan go through.
-double turned_rad(const Position& position) {
+double turned_rad(const Scan& position) {
   double turned_rad = 0.0;
-  for (const SubScan& sub_scan : position.sub_scans) {
-    const std::size_t num = sub_scan.ranges_m.size();
+  for (const Sweep& sweep : position.sweeps) {
+    const std::size_t num = sweep.ranges_m.size();
     if (num < 2) continue;
-    double lowest_rad = sub_scan.beam_angle_rad(0);
+    double lowest_rad = sweep.beam_angle_rad(0);
     double highest_rad = lowest_rad;
     for (std::size_t beam = 1; beam < num; ++beam) {
-      lowest_rad = std::min(lowest_rad, sub_scan.beam_angle_rad(beam));
-      highest_rad = std::max(highest_rad, sub_scan.beam_angle_rad(beam));
+      lowest_rad = std::min(lowest_rad, sweep.beam_angle_rad(beam));
+      highest_rad = std::max(highest_rad, sweep.beam_angle_rad(beam));
     }
     turned_rad = std::max(turned_rad, highest_rad - lowest_rad);
   }
@@ -57,7 +57,7 @@ double turned_rad(const Position& position) {
 double usual_period_s(const Log& log, std::size_t first, std::size_t last) {
   std::vector<double> steps_s;
   for (std::size_t i = first + 1; i < last; ++i) {
-    const double step_s = log.positions[i].timestamp_s - log.positions[i - 1].timestamp_s;
+    const double step_s = log.scans[i].timestamp_s - log.scans[i - 1].timestamp_s;
     if (!(step_s > 0.0) || !std::isfinite(step_s)) continue;
     steps_s.push_back(step_s);
   }
@@ -68,12 +68,12 @@ double usual_period_s(const Log& log, std::size_t first, std::size_t last) {
 
 std::vector<SweepRun> sweep_runs(const Log& log, std::size_t first, std::size_t last, double period_s,
                                  bool goes_by_beam_times) {
-  const auto is_odd = [&](std::size_t i) { return goes_by_beam_times && has_odd_times(log.positions[i], period_s); };
+  const auto is_odd = [&](std::size_t i) { return goes_by_beam_times && has_odd_times(log.scans[i], period_s); };
   std::vector<SweepRun> runs;
   std::size_t start = first;
   for (std::size_t i = first + 1; i <= last; ++i) {
     if (i < last && !is_odd(i) && !is_odd(i - 1)) {
-      const double step_s = log.positions[i].timestamp_s - log.positions[i - 1].timestamp_s;
+      const double step_s = log.scans[i].timestamp_s - log.scans[i - 1].timestamp_s;
       if (step_s > 0.0 && step_s <= kLongestGap * period_s) continue;
     }
     if (i - start >= kLeastSweeps) runs.push_back({start, i});
@@ -82,26 +82,26 @@ std::vector<SweepRun> sweep_runs(const Log& log, std::size_t first, std::size_t 
   return runs;
 }
 
-double BeamTiming::beam_s(const SubScan& sub_scan, std::size_t beam) const {
+double BeamTiming::beam_s(const Sweep& sweep, std::size_t beam) const {
   if (sweep_time_s == 0.0) return 0.0;
-  if (told) return sub_scan.beam_time_s(beam);
-  const double share = static_cast<double>(beam) / static_cast<double>(sub_scan.ranges_m.size());
+  if (told) return sweep.beam_time_s(beam);
+  const double share = static_cast<double>(beam) / static_cast<double>(sweep.ranges_m.size());
   return sweep_time_s > 0.0 ? share * sweep_time_s : (share - 1.0) * sweep_time_s;
 }
 
-std::vector<Sweep> timed_sweeps(const Log& log, std::size_t first, std::size_t last, const BeamTiming& timing,
-                                const ReturnOptions& returns, std::size_t max_points) {
-  std::vector<Sweep> sweeps;
+std::vector<TimedSweep> timed_sweeps(const Log& log, std::size_t first, std::size_t last, const BeamTiming& timing,
+                                     const ReturnOptions& returns, std::size_t max_points) {
+  std::vector<TimedSweep> sweeps;
   sweeps.reserve(last - first);
   for (std::size_t i = first; i < last; ++i) {
-    const Position& position = log.positions[i];
-    Sweep sweep;
-    sweep.stamp_s = position.timestamp_s - log.positions[first].timestamp_s;
+    const Scan& position = log.scans[i];
+    TimedSweep sweep;
+    sweep.stamp_s = position.timestamp_s - log.scans[first].timestamp_s;
     sweep.first_s = sweep.stamp_s;
     sweep.last_s = sweep.stamp_s;
     std::vector<double> ranges_m;
     for (const SweepPoint& point : sweep_points(position, returns, max_points)) {
-      const double time_s = sweep.stamp_s + timing.beam_s(position.sub_scans[point.sub_scan], point.beam);
+      const double time_s = sweep.stamp_s + timing.beam_s(position.sweeps[point.sweep], point.beam);
       sweep.points.push_back({point.p_m, time_s, point.begins_line});
       sweep.first_s = std::min(sweep.first_s, time_s);
       sweep.last_s = std::max(sweep.last_s, time_s);
@@ -117,9 +117,9 @@ std::vector<Sweep> timed_sweeps(const Log& log, std::size_t first, std::size_t l
 double told_sweep_time_s(const Log& log, std::size_t first, std::size_t last) {
   std::vector<double> times_s;
   for (std::size_t i = first; i < last; ++i) {
-    for (const SubScan& sub_scan : log.positions[i].sub_scans) {
-      const std::size_t num = sub_scan.ranges_m.size();
-      if (num > 1) times_s.push_back(sub_scan.beam_time_s(num - 1) - sub_scan.beam_time_s(0));
+    for (const Sweep& sweep : log.scans[i].sweeps) {
+      const std::size_t num = sweep.ranges_m.size();
+      if (num > 1) times_s.push_back(sweep.beam_time_s(num - 1) - sweep.beam_time_s(0));
     }
   }
   return median_of(std::move(times_s));
@@ -129,11 +129,11 @@ double sweep_time_of_rate_s(const Log& log, std::size_t first, std::size_t last,
   std::vector<double> seen_rad;
   for (std::size_t i = first; i < last; ++i) {
     std::set<std::string> labels;
-    for (const SubScan& sub_scan : log.positions[i].sub_scans) {
-      if (!labels.insert(sub_scan.sensor_label).second) return 0.0;
-      const std::size_t num = sub_scan.ranges_m.size();
+    for (const Sweep& sweep : log.scans[i].sweeps) {
+      if (!labels.insert(sweep.sensor_label).second) return 0.0;
+      const std::size_t num = sweep.ranges_m.size();
       if (num < 2) continue;
-      const double step_rad = std::abs(sub_scan.angle_step_rad);
+      const double step_rad = std::abs(sweep.angle_step_rad);
       seen_rad.push_back(std::min(2.0 * kPi, step_rad * static_cast<double>(num)));
     }
   }

@@ -30,12 +30,12 @@ struct BeamTiming {
   bool told = false;          ///< the log says when each beam was sent
 
   /// After the stamp of its sweep.
-  double beam_s(const SubScan& sub_scan, std::size_t beam) const;
+  double beam_s(const Sweep& sweep, std::size_t beam) const;
 };
 
 /// Positions [first, last), by times from the stamp of `first` on; about `max_points` points of each.
-std::vector<Sweep> timed_sweeps(const Log& log, std::size_t first, std::size_t last, const BeamTiming& timing,
-                                const ReturnOptions& returns, std::size_t max_points);
+std::vector<TimedSweep> timed_sweeps(const Log& log, std::size_t first, std::size_t last, const BeamTiming& timing,
+                                     const ReturnOptions& returns, std::size_t max_points);
 
 /// How long a sweep of [first, last) takes by what the log says of its beams; 0: it does not say.
 double told_sweep_time_s(const Log& log, std::size_t first, std::size_t last);

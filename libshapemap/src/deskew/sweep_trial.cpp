@@ -46,7 +46,7 @@ struct Trial {
 
 Trial tried(const Log& log, const SweepRun& stretch, const BeamTiming& timing, double period_s,
             const ReturnOptions& returns) {
-  const std::vector<Sweep> sweeps = timed_sweeps(log, stretch.first, stretch.last, timing, returns, kPoints);
+  const std::vector<TimedSweep> sweeps = timed_sweeps(log, stretch.first, stretch.last, timing, returns, kPoints);
   const ShortMotion motion = short_motion(sweeps, period_s);
   Trial trial;
   trial.misfit_m = motion.misfit_m;

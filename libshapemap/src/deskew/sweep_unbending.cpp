@@ -16,11 +16,11 @@ struct Beam {
   float range_m = 0.0F;
 };
 
-/// The beam from where the sensor was at the stamp to what `sub_scan` hit then.
-Beam unbent_beam(const SubScan& sub_scan, std::size_t beam, const RangeLimits& limits, const Pose2& robot_from_sensor,
+/// The beam from where the sensor was at the stamp to what `sweep` hit then.
+Beam unbent_beam(const Sweep& sweep, std::size_t beam, const RangeLimits& limits, const Pose2& robot_from_sensor,
                  double upward, const Pose2& stamp_from_beam) {
-  const float range_m = sub_scan.ranges_m[beam];
-  const double angle_rad = sub_scan.beam_angle_rad(beam);
+  const float range_m = sweep.ranges_m[beam];
+  const double angle_rad = sweep.beam_angle_rad(beam);
   if (!is_return(range_m, limits)) return {angle_rad + upward * stamp_from_beam.theta_rad, range_m};
   const double bearing_rad = upward * angle_rad;
   const Point2 seen_m = static_cast<double>(range_m) * Point2(std::cos(bearing_rad), std::sin(bearing_rad));
@@ -47,37 +47,37 @@ std::vector<std::size_t> once_round(const std::vector<Beam>& beams, double direc
 
 }  // namespace
 
-SubScan unbent(const SubScan& sub_scan, const ReturnOptions& options, const BeamMotion& stamp_from_beam) {
-  const RangeLimits limits = range_limits(sub_scan, options);
-  const Pose2 robot_from_sensor = robot_from_sensor2(sub_scan);
-  const double upward = is_upside_down(sub_scan.robot_from_sensor) ? -1.0 : 1.0;
-  const std::size_t num = sub_scan.ranges_m.size();
+Sweep unbent(const Sweep& sweep, const ReturnOptions& options, const BeamMotion& stamp_from_beam) {
+  const RangeLimits limits = range_limits(sweep, options);
+  const Pose2 robot_from_sensor = robot_from_sensor2(sweep);
+  const double upward = is_upside_down(sweep.robot_from_sensor) ? -1.0 : 1.0;
+  const std::size_t num = sweep.ranges_m.size();
   std::vector<Beam> beams;
   beams.reserve(num);
   for (std::size_t i = 0; i < num; ++i) {
-    beams.push_back(unbent_beam(sub_scan, i, limits, robot_from_sensor, upward, stamp_from_beam(i)));
+    beams.push_back(unbent_beam(sweep, i, limits, robot_from_sensor, upward, stamp_from_beam(i)));
   }
-  const double direction = num > 1 && sub_scan.beam_angle_rad(num - 1) < sub_scan.beam_angle_rad(0) ? -1.0 : 1.0;
-  SubScan straight = sub_scan;
+  const double direction = num > 1 && sweep.beam_angle_rad(num - 1) < sweep.beam_angle_rad(0) ? -1.0 : 1.0;
+  Sweep straight = sweep;
   straight.ranges_m.clear();
   straight.intensities.clear();
   std::vector<double> angles_rad;
   for (const std::size_t i : once_round(beams, direction)) {
     straight.ranges_m.push_back(beams[i].range_m);
     angles_rad.push_back(beams[i].angle_rad);
-    if (!sub_scan.intensities.empty()) straight.intensities.push_back(sub_scan.intensities[i]);
+    if (!sweep.intensities.empty()) straight.intensities.push_back(sweep.intensities[i]);
   }
   set_beam_angles(straight, std::move(angles_rad));
-  straight.angle_step_rad = sub_scan.angle_step_rad;  // several echoes of a beam are not at the same angle any more
+  straight.angle_step_rad = sweep.angle_step_rad;  // several echoes of a beam are not at the same angle any more
   straight.beam_times_s.clear();
   straight.beam_time_step_s = 0.0;
   straight.start_s = 0.0;
   return straight;
 }
 
-double most_bent_m(const SubScan& sub_scan, const ReturnOptions& options, const BeamMotion& stamp_from_beam) {
+double most_bent_m(const Sweep& sweep, const ReturnOptions& options, const BeamMotion& stamp_from_beam) {
   double most_m = 0.0;
-  for (const Return& hit : returns_in_robot(sub_scan, options)) {
+  for (const Return& hit : returns_in_robot(sweep, options)) {
     most_m = std::max(most_m, (stamp_from_beam(hit.beam) * hit.p_in_robot_m - hit.p_in_robot_m).norm());
   }
   return most_m;

@@ -13,11 +13,11 @@ namespace shapemap {
 /// Where the robot was when a beam was sent, as seen from where it was at the stamp.
 using BeamMotion = std::function<Pose2(std::size_t beam)>;
 
-/// `sub_scan` as if all of its beams had been sent at the stamp. Beams are sorted by their new directions; those that
+/// `sweep` as if all of its beams had been sent at the stamp. Beams are sorted by their new directions; those that
 /// look again where the sweep had already been are left out. A beam without return is turned only.
-SubScan unbent(const SubScan& sub_scan, const ReturnOptions& options, const BeamMotion& stamp_from_beam);
+Sweep unbent(const Sweep& sweep, const ReturnOptions& options, const BeamMotion& stamp_from_beam);
 
-/// How far a hit moves at most when `sub_scan` is unbent.
-double most_bent_m(const SubScan& sub_scan, const ReturnOptions& options, const BeamMotion& stamp_from_beam);
+/// How far a hit moves at most when `sweep` is unbent.
+double most_bent_m(const Sweep& sweep, const ReturnOptions& options, const BeamMotion& stamp_from_beam);
 
 }  // namespace shapemap

@@ -76,7 +76,7 @@ class BridgeSearch {
 
 }  // namespace
 
-std::vector<std::size_t> connected_parts(std::size_t num_nodes, const std::vector<PoseConstraint>& constraints) {
+std::vector<std::size_t> connected_components(std::size_t num_nodes, const std::vector<PoseConstraint>& constraints) {
   std::vector<std::size_t> part(num_nodes);
   std::iota(part.begin(), part.end(), std::size_t{0});
   const auto root = [&](std::size_t node) {
@@ -93,7 +93,7 @@ std::vector<std::size_t> connected_parts(std::size_t num_nodes, const std::vecto
   return part;
 }
 
-std::vector<bool> lone_constraints(std::size_t num_nodes, const std::vector<PoseConstraint>& constraints) {
+std::vector<bool> bridge_edges(std::size_t num_nodes, const std::vector<PoseConstraint>& constraints) {
   for (const PoseConstraint& constraint : constraints) check(num_nodes, constraint);
   return BridgeSearch(num_nodes, constraints).run();
 }

@@ -8,7 +8,7 @@ namespace shapemap {
 namespace {
 
 /// A link that may be nothing is one choice as well.
-std::size_t num_choices(const KeyframeLink& link) { return std::max<std::size_t>(link.hypotheses.size(), 1); }
+std::size_t num_choices(const OdometryEdge& link) { return std::max<std::size_t>(link.candidates.size(), 1); }
 
 /// Both what the scans tell and that the sensor cannot jump: along a bare corridor, only that.
 Eigen::Matrix3d with_usual_motion(const Eigen::Matrix3d& covariance, bool is_expected) {
@@ -21,16 +21,16 @@ Eigen::Matrix3d with_usual_motion(const Eigen::Matrix3d& covariance, bool is_exp
 
 /// What the choice of a link leads by over all that is another place. Of places that were not found it is only known
 /// that they are no better than the worst that was.
-double margin_to_other_places(const KeyframeChain& chain, std::size_t link) {
-  const KeyframeLink& of = chain.links[link];
+double margin_to_other_places(const KeyframeGraph& chain, std::size_t link) {
+  const OdometryEdge& of = chain.edges[link];
   const Choice& choice = of.choice;
-  if (of.hypotheses.size() < 2) return kFullMargin;
-  const PoseConstraint chosen = link_constraint(chain, link, choice.alternative);
+  if (of.candidates.size() < 2) return kFullMargin;
+  const PoseConstraint chosen = edge_constraint(chain, link, choice.candidate);
   double to_other = kFullMargin;
   double to_worst = 0.0;
-  for (std::size_t k = 0; k < of.hypotheses.size(); ++k) {
+  for (std::size_t k = 0; k < of.candidates.size(); ++k) {
     if (k < of.num_own) to_worst = std::max(to_worst, choice.behind[k]);
-    if (k != choice.alternative && !is_same_place(chosen, of.hypotheses[k].ref_from_query)) {
+    if (k != choice.candidate && !is_same_place(chosen, of.candidates[k].ref_from_query)) {
       to_other = std::min(to_other, choice.behind[k]);
     }
   }
@@ -39,62 +39,62 @@ double margin_to_other_places(const KeyframeChain& chain, std::size_t link) {
 
 }  // namespace
 
-double surprise(const Keyframe& keyframe, const MotionHabit& habit, const Pose2& found) {
-  return keyframe.expected ? surprise(*keyframe.expected, found) : habit.surprise(found);
+double surprise(const Keyframe& keyframe, const MotionPrior& prior, const Pose2& found) {
+  return keyframe.expected ? surprise(*keyframe.expected, found) : prior.surprise(found);
 }
 
-PoseConstraint link_constraint(const KeyframeChain& chain, std::size_t link, std::size_t k) {
-  const KeyframeLink& of = chain.links[link];
-  const PoseHypothesis& pose = of.hypotheses[k];
-  if (of.settled_covariance) return {link, link + 1, pose.ref_from_query, *of.settled_covariance, 0.0};
+PoseConstraint edge_constraint(const KeyframeGraph& chain, std::size_t link, std::size_t k) {
+  const OdometryEdge& of = chain.edges[link];
+  const MatchCandidate& pose = of.candidates[k];
+  if (of.culled_covariance) return {link, link + 1, pose.ref_from_query, *of.culled_covariance, 0.0};
   const bool is_expected = chain.keyframes[link + 1].expected.has_value();
   return {link, link + 1, pose.ref_from_query, with_usual_motion(pose_covariance(pose.fit), is_expected), 0.0};
 }
 
-double link_probability(const KeyframeLink& link) {
-  if (link.settled_covariance) return 1.0;
-  if (link.hypotheses.empty()) return 0.0;
-  return match_probability(link.hypotheses[link.choice.alternative], link.choice.margin);
+double edge_probability(const OdometryEdge& link) {
+  if (link.culled_covariance) return 1.0;
+  if (link.candidates.empty()) return 0.0;
+  return match_probability(link.candidates[link.choice.candidate], link.choice.margin);
 }
 
-double probability_by_two_scans(const KeyframeLink& link, std::size_t k, double margin) {
-  return probability_of_neighbours(match_probability(link.hypotheses[k], margin), link.view_shortfall);
+double probability_by_two_scans(const OdometryEdge& link, std::size_t k, double margin) {
+  return odometry_probability(match_probability(link.candidates[k], margin), link.insufficient_view);
 }
 
-double stated_probability(const KeyframeLink& link) {
-  if (link.revised) return link.revised->probability;
-  if (link.settled_covariance || link.hypotheses.empty()) return link_probability(link);
-  return probability_by_two_scans(link, link.choice.alternative, link.choice.margin);
+double stated_probability(const OdometryEdge& link) {
+  if (link.verified) return link.verified->probability;
+  if (link.culled_covariance || link.candidates.empty()) return edge_probability(link);
+  return probability_by_two_scans(link, link.choice.candidate, link.choice.margin);
 }
 
-MotionHabit motion_habit(const KeyframeChain& chain) {
+MotionPrior motion_prior(const KeyframeGraph& chain) {
   constexpr double kCertain = 0.98;
   constexpr double kHeld_m = 0.2;
   std::vector<Pose2> motions;
-  for (const KeyframeLink& link : chain.links) {
-    if (link.settled_covariance || stated_probability(link) < kCertain) continue;
-    const PoseHypothesis& chosen = link.hypotheses[link.choice.alternative];
+  for (const OdometryEdge& link : chain.edges) {
+    if (link.culled_covariance || stated_probability(link) < kCertain) continue;
+    const MatchCandidate& chosen = link.candidates[link.choice.candidate];
     if (worst_deviation_m(pose_covariance(chosen.fit)) < kHeld_m) motions.push_back(chosen.ref_from_query);
   }
-  return MotionHabit(motions);
+  return MotionPrior(motions);
 }
 
-std::vector<std::vector<double>> no_bonus(const KeyframeLink& link, const KeyframeLink& next) {
+std::vector<std::vector<double>> no_transition_scores(const OdometryEdge& link, const OdometryEdge& next) {
   return {num_choices(link), std::vector<double>(num_choices(next), 0.0)};
 }
 
-void choose_hypotheses(KeyframeChain& chain) {
-  ChoiceChain choices;
-  for (const KeyframeLink& link : chain.links) {
+void choose_candidates(KeyframeGraph& chain) {
+  ViterbiChain choices;
+  for (const OdometryEdge& link : chain.edges) {
     std::vector<double>& scores = choices.scores.emplace_back();
-    for (const PoseHypothesis& pose : link.hypotheses) scores.push_back(pose.score);
+    for (const MatchCandidate& pose : link.candidates) scores.push_back(pose.score);
     scores.resize(num_choices(link), 0.0);
-    choices.bonus.push_back(link.bonus);
+    choices.transition_scores.push_back(link.transition_scores);
   }
-  const std::vector<Choice> best = best_choices(choices, kFullMargin);
-  for (std::size_t i = 0; i < chain.links.size(); ++i) {
-    chain.links[i].choice = best[i];
-    chain.links[i].choice.margin = margin_to_other_places(chain, i);
+  const std::vector<Choice> best = viterbi(choices, kFullMargin);
+  for (std::size_t i = 0; i < chain.edges.size(); ++i) {
+    chain.edges[i].choice = best[i];
+    chain.edges[i].choice.margin = margin_to_other_places(chain, i);
   }
 }
 

@@ -10,25 +10,25 @@
 namespace shapemap {
 
 /// Knows the alignments of keyframes as those of their positions.
-class KeyframeStore : public AlignmentStore {
+class KeyframeMatchCache : public MatchCache {
  public:
-  KeyframeStore(const KeyframeChain& chain, AlignmentStore& of_positions)
+  KeyframeMatchCache(const KeyframeGraph& chain, MatchCache& of_positions)
       : chain_(chain), of_positions_(of_positions) {}
 
-  std::optional<std::vector<PoseHypothesis>> find(const AlignmentKey& key) override {
+  std::optional<std::vector<MatchCandidate>> find(const MatchKey& key) override {
     return of_positions_.find(of_position(key));
   }
-  void keep(const AlignmentKey& key, const std::vector<PoseHypothesis>& hypotheses) override {
-    of_positions_.keep(of_position(key), hypotheses);
+  void keep(const MatchKey& key, const std::vector<MatchCandidate>& candidates) override {
+    of_positions_.keep(of_position(key), candidates);
   }
 
  private:
-  AlignmentKey of_position(const AlignmentKey& key) const {
-    return {chain_.keyframes[key.reference].position_index, chain_.keyframes[key.query].position_index, key.search};
+  MatchKey of_position(const MatchKey& key) const {
+    return {chain_.keyframes[key.reference].scan_index, chain_.keyframes[key.query].scan_index, key.search};
   }
 
-  const KeyframeChain& chain_;
-  AlignmentStore& of_positions_;
+  const KeyframeGraph& chain_;
+  MatchCache& of_positions_;
 };
 
 }  // namespace shapemap

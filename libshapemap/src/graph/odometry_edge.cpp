@@ -3,11 +3,11 @@
 
 namespace shapemap {
 
-std::vector<Pose2> sure_steps(const std::vector<ChainLink>& links) {
+std::vector<Pose2> sure_steps(const std::vector<EdgeChoices>& edges) {
   constexpr double kSure = 0.9;
   std::vector<Pose2> steps;
-  for (const ChainLink& link : links) {
-    if (link.exists() && link.probability > kSure) steps.push_back(link.alternatives.front().a_from_b);
+  for (const EdgeChoices& link : edges) {
+    if (link.exists() && link.probability > kSure) steps.push_back(link.candidates.front().a_from_b);
   }
   return steps;
 }

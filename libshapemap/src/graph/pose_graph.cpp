@@ -89,7 +89,7 @@ PoseGraphSolution solve_pose_graph(const std::vector<Pose2>& map_from_node,
                                    const std::vector<PoseConstraint>& constraints, int max_iterations) {
   PoseGraphSolution solution{map_from_node, 0.0};
   if (constraints.empty()) return solution;
-  const std::vector<std::size_t> part = connected_parts(map_from_node.size(), constraints);
+  const std::vector<std::size_t> part = connected_components(map_from_node.size(), constraints);
   std::vector<Parameters> nodes;
   nodes.reserve(map_from_node.size());
   for (const Pose2& pose : map_from_node) {

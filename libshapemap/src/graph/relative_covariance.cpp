@@ -34,7 +34,8 @@ Eigen::Matrix3d effect(const PoseConstraint& constraint, const std::vector<Pose2
 
 }  // namespace
 
-PathCovariance::PathCovariance(const std::vector<Pose2>& map_from_node, const std::vector<PoseConstraint>& constraints)
+RelativeCovariance::RelativeCovariance(const std::vector<Pose2>& map_from_node,
+                                       const std::vector<PoseConstraint>& constraints)
     : map_from_node_(map_from_node), constraints_(constraints), edges_(map_from_node.size()) {
   for (std::size_t c = 0; c < constraints.size(); ++c) {
     const PoseConstraint& constraint = constraints[c];
@@ -47,7 +48,7 @@ PathCovariance::PathCovariance(const std::vector<Pose2>& map_from_node, const st
   }
 }
 
-std::vector<std::size_t> PathCovariance::arrivals(std::size_t a, std::size_t b) const {
+std::vector<std::size_t> RelativeCovariance::arrivals(std::size_t a, std::size_t b) const {
   std::vector<std::size_t> arrival(edges_.size(), kNone);
   std::vector<double> distance(edges_.size(), kInfinity);
   using Reached = std::pair<double, std::size_t>;
@@ -70,7 +71,7 @@ std::vector<std::size_t> PathCovariance::arrivals(std::size_t a, std::size_t b) 
   return arrival;
 }
 
-Eigen::Matrix3d PathCovariance::between(std::size_t a, std::size_t b) const {
+Eigen::Matrix3d RelativeCovariance::between(std::size_t a, std::size_t b) const {
   const std::vector<std::size_t> arrival = arrivals(a, b);
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t node = b; node != a;) {

@@ -12,19 +12,20 @@ constexpr double kNever = -std::numeric_limits<double>::infinity();
 /// The best sum of all links on one side of each alternative, without its own score.
 using Sums = std::vector<std::vector<double>>;
 
-Sums empty_sums(const ChoiceChain& chain) {
+Sums empty_sums(const ViterbiChain& chain) {
   Sums sums;
   for (const std::vector<double>& scores : chain.scores) sums.emplace_back(scores.size(), 0.0);
   return sums;
 }
 
-Sums sums_before(const ChoiceChain& chain) {
+Sums sums_before(const ViterbiChain& chain) {
   Sums sums = empty_sums(chain);
   for (std::size_t link = 1; link < sums.size(); ++link) {
     for (std::size_t to = 0; to < sums[link].size(); ++to) {
       double best = kNever;
       for (std::size_t from = 0; from < sums[link - 1].size(); ++from) {
-        best = std::max(best, sums[link - 1][from] + chain.scores[link - 1][from] + chain.bonus[link - 1][from][to]);
+        best = std::max(
+            best, sums[link - 1][from] + chain.scores[link - 1][from] + chain.transition_scores[link - 1][from][to]);
       }
       sums[link][to] = best;
     }
@@ -32,13 +33,13 @@ Sums sums_before(const ChoiceChain& chain) {
   return sums;
 }
 
-Sums sums_after(const ChoiceChain& chain) {
+Sums sums_after(const ViterbiChain& chain) {
   Sums sums = empty_sums(chain);
   for (std::size_t link = sums.size(); link-- > 1;) {
     for (std::size_t from = 0; from < sums[link - 1].size(); ++from) {
       double best = kNever;
       for (std::size_t to = 0; to < sums[link].size(); ++to) {
-        best = std::max(best, sums[link][to] + chain.scores[link][to] + chain.bonus[link - 1][from][to]);
+        best = std::max(best, sums[link][to] + chain.scores[link][to] + chain.transition_scores[link - 1][from][to]);
       }
       sums[link - 1][from] = best;
     }
@@ -48,7 +49,7 @@ Sums sums_after(const ChoiceChain& chain) {
 
 }  // namespace
 
-std::vector<Choice> best_choices(const ChoiceChain& chain, double full_margin) {
+std::vector<Choice> viterbi(const ViterbiChain& chain, double full_margin) {
   const Sums before = sums_before(chain);
   const Sums after = sums_after(chain);
   std::vector<Choice> choices;
@@ -59,11 +60,11 @@ std::vector<Choice> best_choices(const ChoiceChain& chain, double full_margin) {
     }
     const auto best = std::max_element(sums.begin(), sums.end());
     Choice choice;
-    choice.alternative = static_cast<std::size_t>(best - sums.begin());
+    choice.candidate = static_cast<std::size_t>(best - sums.begin());
     choice.margin = full_margin;
     for (std::size_t i = 0; i < sums.size(); ++i) {
       choice.behind.push_back(*best - sums[i]);
-      if (i != choice.alternative) choice.margin = std::min(choice.margin, choice.behind.back());
+      if (i != choice.candidate) choice.margin = std::min(choice.margin, choice.behind.back());
     }
     choices.push_back(std::move(choice));
   }

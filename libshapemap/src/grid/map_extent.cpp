@@ -21,9 +21,9 @@ constexpr double kInLine = 0.1;             // of the range, off the line throug
 constexpr std::int64_t kSurfaceWorth = 10;  // of a cell; one of lone hits is worth 1
 constexpr double kMostCells = 1e9;          // what is farther off is no map, and the size of the picture is refused
 
-Box box_of_sensors(const std::vector<SeenRays>& seen, const std::vector<PlacedPosition>& placed) {
+Box box_of_sensors(const std::vector<SeenRays>& seen, const std::vector<PlacedScan>& placed) {
   Box box;
-  for (const PlacedPosition& place : placed) box.include(place.map_from_robot.translation());
+  for (const PlacedScan& place : placed) box.include(place.map_from_robot.translation());
   for (const SeenRays& one : seen) box.include(one.rays.from_m);
   return box;
 }
@@ -145,7 +145,7 @@ class CellWorths {
 
 }  // namespace
 
-Box box_of_all(const std::vector<SeenRays>& seen, const std::vector<PlacedPosition>& placed) {
+Box box_of_all(const std::vector<SeenRays>& seen, const std::vector<PlacedScan>& placed) {
   Box box = box_of_sensors(seen, placed);
   for (const SeenRays& one : seen) {
     for (const Point2& hit_m : one.rays.hits_m) box.include(hit_m);
@@ -153,7 +153,7 @@ Box box_of_all(const std::vector<SeenRays>& seen, const std::vector<PlacedPositi
   return box;
 }
 
-Box certain_box(const std::vector<SeenRays>& seen, const std::vector<PlacedPosition>& placed, const Box& all) {
+Box certain_box(const std::vector<SeenRays>& seen, const std::vector<PlacedScan>& placed, const Box& all) {
   const double cell_m = usual_range_m(seen) / kCellsPerRange;
   const double farthest_m = std::max(all.lower_m.cwiseAbs().maxCoeff(), all.upper_m.cwiseAbs().maxCoeff());
   if (placed.size() < 2 || seen.empty() || !(farthest_m / cell_m < kMostCells)) return all;
@@ -162,8 +162,8 @@ Box certain_box(const std::vector<SeenRays>& seen, const std::vector<PlacedPosit
   for (const SeenRays& one : seen) worths.add(one);
   const CellIndex lower = worths.cell_of(box.lower_m);
   const CellIndex upper = worths.cell_of(box.upper_m);
-  const Rectangle positions{lower.x, upper.x, lower.y, upper.y};
-  const std::optional<Rectangle> best = best_rectangle(worths.known(), positions, kCellsPerRange);
+  const Rectangle scans{lower.x, upper.x, lower.y, upper.y};
+  const std::optional<Rectangle> best = best_rectangle(worths.known(), scans, kCellsPerRange);
   if (!best) return all;
   for (const SeenRays& one : seen) {
     for (const Point2& hit_m : one.rays.hits_m) {

@@ -31,7 +31,7 @@ struct SeenRays {
 };
 
 /// Holds all positions, sensors and hits.
-Box box_of_all(const std::vector<SeenRays>& seen, const std::vector<PlacedPosition>& placed);
+Box box_of_all(const std::vector<SeenRays>& seen, const std::vector<PlacedScan>& placed);
 
 /// Holds all positions and sensors, and the hits that are certain enough for the room that they take:
 ///
@@ -44,6 +44,6 @@ Box box_of_all(const std::vector<SeenRays>& seen, const std::vector<PlacedPositi
 ///   small gain. Else the picture is up to twice as large as the core, to hold as much as possible of the rest.
 ///
 /// A single position cannot be checked by others, and all that it saw is held. `all` is box_of_all().
-Box certain_box(const std::vector<SeenRays>& seen, const std::vector<PlacedPosition>& placed, const Box& all);
+Box certain_box(const std::vector<SeenRays>& seen, const std::vector<PlacedScan>& placed, const Box& all);
 
 }  // namespace shapemap

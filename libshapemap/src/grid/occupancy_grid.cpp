@@ -24,15 +24,14 @@ constexpr int kMarginCells = 4;           // so that walls at the rim stay visib
 constexpr double kMaxCells = 400e6;       // one byte each here, up to four in a coloured picture
 constexpr double kMaxCellsPerSide = 1e6;  // readers of pictures, OpenCV's too, refuse wider ones
 
-std::vector<SeenRays> seen_rays(const Log& log, const std::vector<PlacedPosition>& placed,
-                                const ReturnOptions& returns) {
-  const std::vector<std::size_t> starts = starts_of_looks(placed);
+std::vector<SeenRays> seen_rays(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns) {
+  const std::vector<std::size_t> starts = starts_of_visits(placed);
   std::vector<SeenRays> seen;
   std::uint32_t look = 0;
   for (std::size_t i = 0; i < placed.size(); ++i) {
     if (starts[look] == i) ++look;
     for (Rays& rays : rays_of(log, placed[i], returns)) {
-      seen.push_back({std::move(rays), look, placed[i].agreement.contradicts_map});
+      seen.push_back({std::move(rays), look, placed[i].consistency.contradicts_map});
     }
   }
   return seen;
@@ -202,19 +201,19 @@ void draw_hits(Canvas& canvas, const std::vector<SeenRays>& seen, Contradicting 
 
 /// Calls `visit(from, end)` for each beam that hit nothing, of scans that go with the rest of the map.
 template <class Visit>
-void for_each_open_ray(const Log& log, const std::vector<PlacedPosition>& placed, const ReturnOptions& returns,
-                       const GridMapOptions& options, const Visit& visit) {
+void for_each_open_ray(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns,
+                       const OccupancyGridOptions& options, const Visit& visit) {
   if (!(options.clear_no_return_m > 0.0)) return;
-  for (const PlacedPosition& place : placed) {
-    if (place.agreement.contradicts_map && options.contradicting == Contradicting::kFillGaps) continue;
+  for (const PlacedScan& place : placed) {
+    if (place.consistency.contradicts_map && options.contradicting == Contradicting::kFillGaps) continue;
     for (const OpenRays& rays : open_rays_of(log, place, returns, options.clear_no_return_m)) {
       for (const Point2& end_m : rays.ends_m) visit(rays.from_m, end_m);
     }
   }
 }
 
-GridMap picture_of(const MrptGrid& grid, const Extent& of_grid, const Extent& extent, double resolution_m) {
-  GridMap map;
+OccupancyGrid picture_of(const MrptGrid& grid, const Extent& of_grid, const Extent& extent, double resolution_m) {
+  OccupancyGrid map;
   map.resolution_m = resolution_m;
   map.origin_m = {extent.left * resolution_m, extent.bottom * resolution_m};
   map.width_cells = static_cast<int>(extent.width());
@@ -230,7 +229,7 @@ GridMap picture_of(const MrptGrid& grid, const Extent& of_grid, const Extent& ex
   return map;
 }
 
-void count_returns(const std::vector<SeenRays>& seen, const Box& all, GridMap& map) {
+void count_returns(const std::vector<SeenRays>& seen, const Box& all, OccupancyGrid& map) {
   const auto is_inside = [&](const Point2& p_m) {
     const Eigen::Vector2i pixel = map.pixel_at(p_m);
     return 0 <= pixel.x() && pixel.x() < map.width_cells && 0 <= pixel.y() && pixel.y() < map.height_cells;
@@ -246,13 +245,13 @@ void count_returns(const std::vector<SeenRays>& seen, const Box& all, GridMap& m
 
 }  // namespace
 
-Eigen::Vector2i GridMap::pixel_at(const Point2& p_in_map_m) const {
+Eigen::Vector2i OccupancyGrid::pixel_at(const Point2& p_in_map_m) const {
   const Point2 cell = (p_in_map_m - origin_m) / resolution_m;
   return {static_cast<int>(std::floor(cell.x())), height_cells - 1 - static_cast<int>(std::floor(cell.y()))};
 }
 
-GridMap build_grid_map(const Log& log, const std::vector<PlacedPosition>& placed, const ReturnOptions& returns,
-                       const GridMapOptions& options) {
+OccupancyGrid build_occupancy_grid(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns,
+                                   const OccupancyGridOptions& options) {
   validate(options);
   if (placed.empty()) throw OutputError("no position has a pose, so there is no map to draw");
   const double resolution_m = options.resolution_m;
@@ -277,7 +276,7 @@ GridMap build_grid_map(const Log& log, const std::vector<PlacedPosition>& placed
                        [&](const Eigen::Vector2i& cell) { shown.include(canvas.middle_of_m(cell)); });
     });
   }
-  GridMap map = picture_of(canvas.grid(), extent, Extent(shown, resolution_m), resolution_m);
+  OccupancyGrid map = picture_of(canvas.grid(), extent, Extent(shown, resolution_m), resolution_m);
   count_returns(seen, all, map);
   return map;
 }

@@ -52,8 +52,8 @@ class Side {
 /// The choice among all rectangles that hold the positions and end at lines of the four sides.
 class RectangleChoice {
  public:
-  RectangleChoice(const std::vector<KnownCell>& cells, const Rectangle& positions, double softening_cells)
-      : positions_(positions), softening_cells_(softening_cells) {
+  RectangleChoice(const std::vector<KnownCell>& cells, const Rectangle& scans, double softening_cells)
+      : positions_(scans), softening_cells_(softening_cells) {
     for (const auto& [cell, worth] : cells) {
       left_.add(positions_.left - cell.x);
       right_.add(cell.x - positions_.right);
@@ -159,9 +159,9 @@ class RectangleChoice {
 
 }  // namespace
 
-std::optional<Rectangle> best_rectangle(const std::vector<KnownCell>& cells, const Rectangle& positions,
+std::optional<Rectangle> best_rectangle(const std::vector<KnownCell>& cells, const Rectangle& scans,
                                         double softening_cells) {
-  return RectangleChoice(cells, positions, softening_cells).best();
+  return RectangleChoice(cells, scans, softening_cells).best();
 }
 
 }  // namespace shapemap

@@ -33,7 +33,7 @@ struct KnownCell {
 /// The rectangle around `positions` that is worth its size, as certain_box() says; nothing where it is best to hold
 /// all. `softening_cells` is added to width and height, so that a map without width (a straight way) is not taken for
 /// infinitely small. The order of the cells does not matter.
-std::optional<Rectangle> best_rectangle(const std::vector<KnownCell>& cells, const Rectangle& positions,
+std::optional<Rectangle> best_rectangle(const std::vector<KnownCell>& cells, const Rectangle& scans,
                                         double softening_cells);
 
 }  // namespace shapemap

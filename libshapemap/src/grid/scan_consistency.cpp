@@ -28,8 +28,8 @@ enum class BeamFate { kUnknown, kAgree, kThrough, kInFree };
 
 class Judge {
  public:
-  Judge(const Log& log, const std::vector<PlacedPosition>& placed, const ReturnOptions& returns,
-        const AgreementOptions& options)
+  Judge(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns,
+        const ConsistencyOptions& options)
       : log_(log),
         placed_(placed),
         returns_(returns),
@@ -38,10 +38,10 @@ class Judge {
         beside_(static_cast<int>(std::lround(kBesideSensor_m / options.cell_m))),
         min_looks_(static_cast<std::uint32_t>(options.min_looks)) {}
 
-  std::vector<ScanAgreement> run() {
-    const std::vector<std::size_t> starts = starts_of_looks(placed_);
+  std::vector<ScanConsistency> run() {
+    const std::vector<std::size_t> starts = starts_of_visits(placed_);
     for (std::size_t i = 0; i + 1 < starts.size(); ++i) draw(starts[i], starts[i + 1], number_of(i));
-    std::vector<ScanAgreement> all;
+    std::vector<ScanConsistency> all;
     for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
       // Once more, so that the look's own marks are the last ones and can be told from the others'.
       draw_own(starts[i], starts[i + 1], number_of(i));
@@ -62,7 +62,7 @@ class Judge {
             static_cast<int>(std::floor(p_m.y() / options_.cell_m))};
   }
 
-  std::vector<CellRays> rays_in_cells(const PlacedPosition& place) const {
+  std::vector<CellRays> rays_in_cells(const PlacedScan& place) const {
     std::vector<CellRays> all;
     for (const Rays& rays : rays_of(log_, place, returns_)) {
       if (!is_on_grid(rays.from_m)) continue;
@@ -91,18 +91,18 @@ class Judge {
 
   void draw(std::size_t first, std::size_t last, std::uint32_t look) {
     trace(
-        first, last, [look](LookCell& cell) { cell.pass(look); }, [look](LookCell& cell) { cell.hit(look); });
+        first, last, [look](VisitCell& cell) { cell.pass(look); }, [look](VisitCell& cell) { cell.hit(look); });
   }
 
   void draw_own(std::size_t first, std::size_t last, std::uint32_t look) {
     trace(
-        first, last, [look](LookCell& cell) { cell.last_pass = look; },
-        [look](LookCell& cell) { cell.last_hit = look; });
+        first, last, [look](VisitCell& cell) { cell.last_pass = look; },
+        [look](VisitCell& cell) { cell.last_hit = look; });
   }
 
   /// Nearly all other looks that came to the cell ended there.
   bool is_wall(const Eigen::Vector2i& at, std::uint32_t look) {
-    const LookCell& cell = grid_.seen(at);
+    const VisitCell& cell = grid_.seen(at);
     const std::uint32_t hits = cell.other_hits(look);
     return hits >= min_looks_ && hits >= kWallOdds * cell.other_passes(look);
   }
@@ -139,51 +139,51 @@ class Judge {
     return passes >= min_looks_ ? BeamFate::kInFree : BeamFate::kUnknown;
   }
 
-  ScanAgreement judged(const PlacedPosition& place, std::uint32_t look) {
-    ScanAgreement agreement;
+  ScanConsistency judged(const PlacedScan& place, std::uint32_t look) {
+    ScanConsistency consistency;
     std::size_t beams = 0;
     for (const CellRays& rays : rays_in_cells(place)) {
       for (const Eigen::Vector2i& end : rays.hits) {
         const BeamFate fate = fate_of(rays.from, end, look);
-        if (fate == BeamFate::kAgree) agreement.agree += 1.0;
-        if (fate == BeamFate::kThrough) agreement.through += 1.0;
-        if (fate == BeamFate::kInFree) agreement.in_free += 1.0;
+        if (fate == BeamFate::kAgree) consistency.agree += 1.0;
+        if (fate == BeamFate::kThrough) consistency.through += 1.0;
+        if (fate == BeamFate::kInFree) consistency.in_free += 1.0;
         ++beams;
       }
     }
-    if (beams == 0) return agreement;
-    for (double* share : {&agreement.agree, &agreement.through, &agreement.in_free}) {
+    if (beams == 0) return consistency;
+    for (double* share : {&consistency.agree, &consistency.through, &consistency.in_free}) {
       *share /= static_cast<double>(beams);
     }
-    const double against = agreement.through + agreement.in_free;
-    agreement.contradicts_map =
-        agreement.known() >= options_.min_known_share && against > options_.contradicting_share * agreement.known();
-    return agreement;
+    const double against = consistency.through + consistency.in_free;
+    consistency.contradicts_map =
+        consistency.known() >= options_.min_known_share && against > options_.contradicting_share * consistency.known();
+    return consistency;
   }
 
   const Log& log_;
-  const std::vector<PlacedPosition>& placed_;
+  const std::vector<PlacedScan>& placed_;
   const ReturnOptions& returns_;
-  const AgreementOptions& options_;
+  const ConsistencyOptions& options_;
   int reach_;   ///< the tolerance, in cells
   int beside_;  ///< what is nearer to a sensor is not told from its own place
   std::uint32_t min_looks_;
-  LookGrid grid_;
+  VisitGrid grid_;
 };
 
 }  // namespace
 
-std::vector<ScanAgreement> scan_agreements(const Log& log, const std::vector<PlacedPosition>& placed,
-                                           const ReturnOptions& returns, const AgreementOptions& options) {
+std::vector<ScanConsistency> scan_consistencies(const Log& log, const std::vector<PlacedScan>& placed,
+                                                const ReturnOptions& returns, const ConsistencyOptions& options) {
   validate(options);
   return Judge(log, placed, returns, options).run();
 }
 
-void judge_scans(const Log& log, const ReturnOptions& returns, const AgreementOptions& options,
-                 std::vector<Fragment>& fragments) {
-  for (Fragment& fragment : fragments) {
-    const std::vector<ScanAgreement> agreements = scan_agreements(log, fragment.positions, returns, options);
-    for (std::size_t i = 0; i < agreements.size(); ++i) fragment.positions[i].agreement = agreements[i];
+void judge_consistency(const Log& log, const ReturnOptions& returns, const ConsistencyOptions& options,
+                       std::vector<Component>& components) {
+  for (Component& component : components) {
+    const std::vector<ScanConsistency> agreements = scan_consistencies(log, component.scans, returns, options);
+    for (std::size_t i = 0; i < agreements.size(); ++i) component.scans[i].consistency = agreements[i];
   }
 }
 

@@ -11,7 +11,7 @@
 /// How many looks ended in each cell of the plane, and how many went through.
 namespace shapemap {
 
-struct LookCell {
+struct VisitCell {
   std::uint32_t hits = 0;
   std::uint32_t passes = 0;
   std::uint32_t last_hit = 0;  ///< number of the look that hit it last
@@ -31,9 +31,9 @@ struct LookCell {
 };
 
 /// An endless grid, in tiles that exist where something was seen.
-class LookGrid {
+class VisitGrid {
  public:
-  LookCell& at(const Eigen::Vector2i& cell) {
+  VisitCell& at(const Eigen::Vector2i& cell) {
     const std::int64_t key = key_of(cell);
     if (key != last_key_) {
       std::unique_ptr<Tile>& tile = tiles_[key];
@@ -45,8 +45,8 @@ class LookGrid {
   }
 
   /// An empty cell where there is no tile.
-  const LookCell& seen(const Eigen::Vector2i& cell) {
-    static const LookCell empty;
+  const VisitCell& seen(const Eigen::Vector2i& cell) {
+    static const VisitCell empty;
     const std::int64_t key = key_of(cell);
     if (key != last_key_) {
       const auto found = tiles_.find(key);
@@ -60,7 +60,7 @@ class LookGrid {
  private:
   static constexpr int kSideBits = 5;
   static constexpr int kSide = 1 << kSideBits;
-  using Tile = std::array<LookCell, static_cast<std::size_t>(kSide) * kSide>;
+  using Tile = std::array<VisitCell, static_cast<std::size_t>(kSide) * kSide>;
 
   /// Shifts round towards minus infinity, so that tiles are alike on both sides of 0.
   static std::int64_t key_of(const Eigen::Vector2i& cell) {

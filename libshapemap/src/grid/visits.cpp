@@ -9,7 +9,7 @@ constexpr double kLookTurn_rad = 20 * kDegree;
 
 }  // namespace
 
-std::vector<std::size_t> starts_of_looks(const std::vector<PlacedPosition>& placed) {
+std::vector<std::size_t> starts_of_visits(const std::vector<PlacedScan>& placed) {
   std::vector<std::size_t> starts;
   for (std::size_t i = 0; i < placed.size(); ++i) {
     if (!starts.empty()) {

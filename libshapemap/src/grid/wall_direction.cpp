@@ -194,8 +194,8 @@ WallDirection direction_of(const std::vector<Stretch>& stretches) {
 
 }  // namespace
 
-WallDirection wall_direction(const Log& log, const std::vector<PlacedPosition>& placed, const ReturnOptions& returns) {
-  const std::vector<std::size_t> starts = starts_of_looks(placed);
+WallDirection wall_direction(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns) {
+  const std::vector<std::size_t> starts = starts_of_visits(placed);
   std::vector<std::vector<Run>> runs(starts.size() - 1);
   std::vector<double> deviations_m;
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -215,13 +215,14 @@ WallDirection wall_direction(const Log& log, const std::vector<PlacedPosition>& 
   return direction_of(weighed(std::move(looks)));
 }
 
-std::vector<WallDirection> align_walls(const Log& log, const ReturnOptions& returns, std::vector<Fragment>& fragments) {
+std::vector<WallDirection> align_walls(const Log& log, const ReturnOptions& returns,
+                                       std::vector<Component>& components) {
   std::vector<WallDirection> directions;
-  for (Fragment& fragment : fragments) {
-    directions.push_back(wall_direction(log, fragment.positions, returns));
+  for (Component& component : components) {
+    directions.push_back(wall_direction(log, component.scans, returns));
     if (!directions.back().is_dominant()) continue;
     const Pose2 straight_from_map{0.0, 0.0, directions.back().turn_rad()};
-    for (PlacedPosition& place : fragment.positions) place.map_from_robot = straight_from_map * place.map_from_robot;
+    for (PlacedScan& place : component.scans) place.map_from_robot = straight_from_map * place.map_from_robot;
   }
   return directions;
 }

@@ -23,17 +23,17 @@ constexpr double kSureLoop = 18.0;
 /// Of a closed loop.
 const Eigen::Matrix3d kLoopCovariance = Eigen::Vector3d(0.01, 0.01, 0.0012).asDiagonal();
 
-class LinkDoubts {
+class DoubtfulEdges {
  public:
-  LinkDoubts(const RobustOptions& options, const Execution& execution, KeyframeChain& chain, KeyframeMap& map,
-             AlignmentStore* store)
+  DoubtfulEdges(const RobustOptions& options, const Execution& execution, KeyframeGraph& chain, OptimizedMap& map,
+                MatchCache* store)
       : options_(options), execution_(execution), chain_(chain), map_(map), store_(store) {
     for (const Keyframe& keyframe : chain.keyframes) views_.push_back(keyframe.view);
   }
 
   bool run() {
     poses_ = map_.map_from_keyframe;
-    habit_ = motion_habit(chain_);
+    prior_ = motion_prior(chain_);
     find();
     if (doubts_.empty()) return false;
     const double least = options_.front_end.split_below;
@@ -45,7 +45,7 @@ class LinkDoubts {
     drop_contradicted_loops();
     if (!changed_) return false;
     map_.map_from_keyframe = poses_;
-    std::vector<PoseConstraint> joined = link_constraints(chain_, map_.link_choice);
+    std::vector<PoseConstraint> joined = edge_constraints(chain_, map_.edge_choice);
     const std::vector<PoseConstraint> closed = loops([](const ClosedLoop&) { return true; });
     joined.insert(joined.end(), closed.begin(), closed.end());
     part(joined);
@@ -55,26 +55,26 @@ class LinkDoubts {
 
  private:
   struct Doubt {
-    DoubtfulLink of_map;
+    DoubtfulEdge of_map;
     std::size_t in_map;                   ///< which of the link's hypotheses
-    std::vector<std::size_t> hypotheses;  ///< per candidate: which of the link's
+    std::vector<std::size_t> candidates;  ///< per candidate: which of the link's
   };
 
   /// Joins what is certain by the candidates that there are; the rest stays in doubt.
   void settle(double least_probability) {
-    std::vector<DoubtfulLink> doubtful;
+    std::vector<DoubtfulEdge> doubtful;
     for (const Doubt& doubt : doubts_) doubtful.push_back(doubt.of_map);
-    RevisedMap revised = revise_links(views_, poses_, piece_, doubtful, options_.matcher.search.visibility,
-                                      least_probability, execution_.threads, execution_.observer);
-    poses_ = std::move(revised.map_from_node);
-    piece_ = std::move(revised.piece_of_node);
+    VerifiedMap verified = verify_edges(views_, poses_, piece_, doubtful, options_.matcher.search.visibility,
+                                        least_probability, execution_.threads, execution_.observer);
+    poses_ = std::move(verified.map_from_node);
+    piece_ = std::move(verified.piece_of_node);
     std::vector<Doubt> rest;
     for (std::size_t d = 0; d < doubts_.size(); ++d) {
-      const RevisedLink& link = revised.links[d];
-      const std::size_t hypothesis = doubts_[d].hypotheses[link.candidate];
+      const VerifiedEdge& link = verified.edges[d];
+      const std::size_t candidate = doubts_[d].candidates[link.candidate];
       note(doubts_[d], link);
       if (link.joins) {
-        take(doubts_[d].of_map.link, static_cast<int>(hypothesis));
+        take(doubts_[d].of_map.link, static_cast<int>(candidate));
       } else {
         rest.push_back(std::move(doubts_[d]));
       }
@@ -91,26 +91,27 @@ class LinkDoubts {
         rest.push_back(std::move(doubt));
         continue;
       }
-      map_.link_choice[link] = kCut;
+      map_.edge_choice[link] = kCut;
       changed_ = true;
     }
     doubts_ = std::move(rest);
   }
 
   /// Where the observer asked to stop, nobody was asked, and the link is as probable as before.
-  void note(const Doubt& doubt, const RevisedLink& link) {
-    std::optional<RevisedChoice>& revised = chain_.links[doubt.of_map.link].revised;
-    revised.reset();
-    if (link.said_by_others.empty()) return;
-    revised = RevisedChoice{doubt.hypotheses[link.candidate], link.probability, doubt.in_map,
-                            by_hypothesis(doubt, link.said_by_others), by_hypothesis(doubt, link.vouched)};
+  void note(const Doubt& doubt, const VerifiedEdge& link) {
+    std::optional<VerifiedChoice>& verified = chain_.edges[doubt.of_map.link].verified;
+    verified.reset();
+    if (link.support_by_others.empty()) return;
+    verified =
+        VerifiedChoice{doubt.candidates[link.candidate], link.probability, doubt.in_map,
+                       by_hypothesis(doubt, link.support_by_others), by_hypothesis(doubt, link.parallel_support)};
   }
 
   /// Candidates are all hypotheses, that of the map first.
   template <class What>
   static std::vector<What> by_hypothesis(const Doubt& doubt, const std::vector<What>& by_candidate) {
     std::vector<What> in_order(by_candidate.size());
-    for (std::size_t c = 0; c < by_candidate.size(); ++c) in_order[doubt.hypotheses[c]] = by_candidate[c];
+    for (std::size_t c = 0; c < by_candidate.size(); ++c) in_order[doubt.candidates[c]] = by_candidate[c];
     return in_order;
   }
 
@@ -118,17 +119,17 @@ class LinkDoubts {
   void find() {
     std::vector<PoseConstraint> sure = loops([&](const ClosedLoop& loop) { return is_sure(loop); });
     std::vector<std::size_t> doubtful;
-    for (std::size_t i = 0; i < chain_.links.size(); ++i) {
+    for (std::size_t i = 0; i < chain_.edges.size(); ++i) {
       if (is_doubtful(i)) {
         doubtful.push_back(i);
-      } else if (map_.link_choice[i] != kCut) {
+      } else if (map_.edge_choice[i] != kCut) {
         sure.push_back({i, i + 1, {}, Eigen::Matrix3d::Identity(), 0.0});
       }
     }
-    piece_ = connected_parts(views_.size(), sure);
+    piece_ = connected_components(views_.size(), sure);
     for (const std::size_t i : doubtful) {
       if (piece_[i] == piece_[i + 1]) continue;
-      doubts_.push_back({{i, {}, chain_.links[i].view_shortfall}, hypothesis_in_map(i), {}});
+      doubts_.push_back({{i, {}, chain_.edges[i].insufficient_view}, hypothesis_in_map(i), {}});
     }
   }
 
@@ -139,8 +140,8 @@ class LinkDoubts {
 
   /// A link that is cut where loops hold both sides is as doubtful as one that is improbable: so are the loops.
   bool is_doubtful(std::size_t i) const {
-    if (map_.component[i] != map_.component[i + 1] || chain_.links[i].hypotheses.empty()) return false;
-    const double chance = map_.link_choice[i] == kCut ? 0.0 : stated_probability(chain_.links[i]);
+    if (map_.component[i] != map_.component[i + 1] || chain_.edges[i].candidates.empty()) return false;
+    const double chance = map_.edge_choice[i] == kCut ? 0.0 : stated_probability(chain_.edges[i]);
     return chance < std::max(options_.edge_verification.doubt_below, options_.front_end.split_below);
   }
 
@@ -169,42 +170,42 @@ class LinkDoubts {
 
   std::size_t keyframe_of(std::size_t position) const {
     const auto found = std::lower_bound(chain_.keyframes.begin(), chain_.keyframes.end(), position,
-                                        [](const Keyframe& k, std::size_t p) { return k.position_index < p; });
+                                        [](const Keyframe& k, std::size_t p) { return k.scan_index < p; });
     return static_cast<std::size_t>(found - chain_.keyframes.begin());
   }
 
   void add_candidates(Doubt& doubt, bool thoroughly) {
     const std::size_t i = doubt.of_map.link;
-    KeyframeLink& link = chain_.links[i];
+    OdometryEdge& link = chain_.edges[i];
     if (thoroughly) {
       search_again(i);
-    } else if (link_probability(link) < options_.loop_detection.bridge_below) {
+    } else if (edge_probability(link) < options_.loop_detection.bridge_below) {
       add_bridges(i);
     }
-    doubt.hypotheses = {doubt.in_map};
+    doubt.candidates = {doubt.in_map};
     doubt.of_map.candidates = {candidate(i, doubt.in_map, in_map(i))};
-    for (std::size_t k = 0; k < link.hypotheses.size(); ++k) {
+    for (std::size_t k = 0; k < link.candidates.size(); ++k) {
       if (k == doubt.in_map) continue;
-      doubt.hypotheses.push_back(k);
-      doubt.of_map.candidates.push_back(candidate(i, k, link.hypotheses[k].ref_from_query));
+      doubt.candidates.push_back(k);
+      doubt.of_map.candidates.push_back(candidate(i, k, link.candidates[k].ref_from_query));
     }
   }
 
-  DoubtfulLink::Candidate candidate(std::size_t i, std::size_t k, const Pose2& a_from_b) const {
-    const PoseHypothesis& hypothesis = chain_.links[i].hypotheses[k];
-    return {a_from_b, hypothesis.score, link_constraint(chain_, i, k).covariance,
-            best_deviation_m(pose_covariance(hypothesis.fit))};
+  DoubtfulEdge::Candidate candidate(std::size_t i, std::size_t k, const Pose2& a_from_b) const {
+    const MatchCandidate& candidate = chain_.edges[i].candidates[k];
+    return {a_from_b, candidate.score, edge_constraint(chain_, i, k).covariance,
+            best_deviation_m(pose_covariance(candidate.fit))};
   }
 
   /// Where loops have cut a link, what the map has may be none of the link's hypotheses.
   std::size_t hypothesis_in_map(std::size_t i) {
-    if (map_.link_choice[i] != kCut) return static_cast<std::size_t>(map_.link_choice[i]);
-    std::vector<PoseHypothesis>& known = chain_.links[i].hypotheses;
+    if (map_.edge_choice[i] != kCut) return static_cast<std::size_t>(map_.edge_choice[i]);
+    std::vector<MatchCandidate>& known = chain_.edges[i].candidates;
     const Pose2 pose = in_map(i);
-    add(i, refined_hypothesis(*views_[i], *views_[i + 1], pose, options_.matcher.search));
-    const auto off = [&](const PoseHypothesis& hypothesis) {
-      return (hypothesis.ref_from_query.translation() - pose.translation()).norm() +
-             angle_between(hypothesis.ref_from_query.theta_rad, pose.theta_rad);
+    add(i, refined_candidate(*views_[i], *views_[i + 1], pose, options_.matcher.search));
+    const auto off = [&](const MatchCandidate& candidate) {
+      return (candidate.ref_from_query.translation() - pose.translation()).norm() +
+             angle_between(candidate.ref_from_query.theta_rad, pose.theta_rad);
     };
     const auto nearest = std::min_element(known.begin(), known.end(),
                                           [&](const auto& one, const auto& other) { return off(one) < off(other); });
@@ -216,51 +217,51 @@ class LinkDoubts {
   /// What scans before and after a link say of each other is carried to the link by way of the map.
   void add_bridges(std::size_t i) {
     const std::vector<Pose2>& poses = map_.map_from_keyframe;
-    for (const LoopHypothesis& bridge :
-         bridges(views_, {i}, {options_.matcher.search, options_.loop_detection, execution_, store_})) {
+    for (const LoopCandidate& bridge :
+         cross_edge_matches(views_, {i}, {options_.matcher.search, options_.loop_detection, execution_, store_})) {
       const Pose2 a_from_b =
           inverse(poses[i]) * (poses[bridge.a] * bridge.a_from_b * inverse(poses[bridge.b])) * poses[i + 1];
       if (a_from_b.translation().norm() > max_shift_m(*views_[i], *views_[i + 1], options_.matcher.search.voting)) {
         continue;
       }
-      add(i, refined_hypothesis(*views_[i], *views_[i + 1], a_from_b, options_.matcher.search));
+      add(i, refined_candidate(*views_[i], *views_[i + 1], a_from_b, options_.matcher.search));
     }
   }
 
   /// With much more effort than a chain can have for each link.
   void search_again(std::size_t i) {
-    HypothesisSearchOptions search = options_.matcher.search;
+    MatchSearchOptions search = options_.matcher.search;
     search.voting.peaks *= kMoreEffort;
-    search.hypotheses.rotation_peaks *= kMoreEffort;
-    search.hypotheses.refined *= kMoreEffort;
-    search.hypotheses.kept *= kMoreEffort;
-    for (const PoseHypothesis& pose : pose_hypotheses(*views_[i], *views_[i + 1], search)) add(i, pose);
+    search.candidates.rotation_peaks *= kMoreEffort;
+    search.candidates.refined *= kMoreEffort;
+    search.candidates.kept *= kMoreEffort;
+    for (const MatchCandidate& pose : find_candidates(*views_[i], *views_[i + 1], search)) add(i, pose);
   }
 
   /// What is unusual scores less, as in the chain.
-  void add(std::size_t i, PoseHypothesis pose) {
-    pose.score -= surprise(chain_.keyframes[i + 1], habit_, pose.ref_from_query);
-    add_if_new(pose, chain_.links[i].hypotheses);
+  void add(std::size_t i, MatchCandidate pose) {
+    pose.score -= surprise(chain_.keyframes[i + 1], prior_, pose.ref_from_query);
+    add_if_new(pose, chain_.edges[i].candidates);
   }
 
-  void take(std::size_t link, int hypothesis) {
-    if (map_.link_choice[link] == hypothesis) return;
-    map_.link_choice[link] = hypothesis;
+  void take(std::size_t link, int candidate) {
+    if (map_.edge_choice[link] == candidate) return;
+    map_.edge_choice[link] = candidate;
     changed_ = true;
   }
 
   /// Moves what is not joined any more apart.
   void part(const std::vector<PoseConstraint>& joined) {
-    map_.component = connected_parts(views_.size(), joined);
+    map_.component = connected_components(views_.size(), joined);
     for (std::size_t n = 0; n < views_.size(); ++n) {
       if (map_.component[n] > 0)
         map_.map_from_keyframe[n].x_m += kPiecesApart_m * static_cast<double>(map_.component[n]);
     }
-    const std::vector<bool> lone = lone_constraints(views_.size(), joined);
+    const std::vector<bool> lone = bridge_edges(views_.size(), joined);
     std::size_t next = 0;
-    for (std::size_t i = 0; i < chain_.links.size(); ++i) {
-      const bool is_cut = map_.link_choice[i] == kCut;
-      map_.held_by_loops[i] = is_cut ? map_.component[i] == map_.component[i + 1] : !lone[next++];
+    for (std::size_t i = 0; i < chain_.edges.size(); ++i) {
+      const bool is_cut = map_.edge_choice[i] == kCut;
+      map_.loop_constrained[i] = is_cut ? map_.component[i] == map_.component[i + 1] : !lone[next++];
     }
   }
 
@@ -272,12 +273,12 @@ class LinkDoubts {
 
   const RobustOptions& options_;
   Execution execution_;
-  KeyframeChain& chain_;
-  KeyframeMap& map_;
-  AlignmentStore* store_;
+  KeyframeGraph& chain_;
+  OptimizedMap& map_;
+  MatchCache* store_;
   NodeViews views_;
   std::vector<Doubt> doubts_;
-  MotionHabit habit_;
+  MotionPrior prior_;
   std::vector<Pose2> poses_;        ///< of the pieces, as far as they are joined
   std::vector<std::size_t> piece_;  ///< of each node
   bool changed_ = false;
@@ -285,13 +286,13 @@ class LinkDoubts {
 
 }  // namespace
 
-bool revise_doubtful_links(const RobustOptions& options, const Execution& execution, AlignmentStore* store,
-                           KeyframeChain& chain, KeyframeMap& map) {
+bool verify_doubtful_edges(const RobustOptions& options, const Execution& execution, MatchCache* store,
+                           KeyframeGraph& chain, OptimizedMap& map) {
   if (options.edge_verification.doubt_below <= 0.0) return false;
-  std::optional<KeyframeStore> of_keyframes;
+  std::optional<KeyframeMatchCache> of_keyframes;
   if (store) of_keyframes.emplace(chain, *store);
   try {
-    return LinkDoubts(options, execution, chain, map, of_keyframes ? &*of_keyframes : nullptr).run();
+    return DoubtfulEdges(options, execution, chain, map, of_keyframes ? &*of_keyframes : nullptr).run();
   } catch (const Interrupted&) {
     return false;
   }

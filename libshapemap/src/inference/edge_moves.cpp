@@ -20,19 +20,19 @@ constexpr double kHopelessLoop = 200.0;
 }  // namespace
 
 /// Moves what the chain has after link `i`; loops that then are contradicted are given up.
-void LoopRepair::swing(LoopChoice& map, std::size_t i, const Pose2& move) const {
+void EdgeMoves::swing(MapHypothesis& map, std::size_t i, const Pose2& move) const {
   std::size_t n = i + 1;
   do {
     map.map_from_node[n] = move * map.map_from_node[n];
     ++n;
-  } while (n < problem_.num_nodes() && map.link_choice[n - 1] != kCut);
+  } while (n < problem_.num_nodes() && map.edge_choice[n - 1] != kCut);
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
     if (map.accepted[k] && !is_within(problem_.off(map, k), kContradicts_m, kContradicts_rad)) map.accepted[k] = 0;
   }
 }
 
 /// Closes the loops of a changed map, and takes it if it then is better.
-bool LoopRepair::better_when_closed(LoopChoice& trial, LoopChoice& best, double hopeless) {
+bool EdgeMoves::better_when_closed(MapHypothesis& trial, MapHypothesis& best, double hopeless) {
   problem_.solve(trial);
   problem_.rate(trial);
   closer_.close_all_agreeing(trial);
@@ -46,34 +46,34 @@ bool LoopRepair::better_when_closed(LoopChoice& trial, LoopChoice& best, double 
 
 /// Whether a change of the best map so far has not been tried yet; what was tried is not worth another look until the
 /// map changes.
-bool LoopRepair::is_new(std::size_t link, int choice, std::size_t loop) {
+bool EdgeMoves::is_new(std::size_t link, int choice, std::size_t loop) {
   return tried_.insert({link, choice, loop}).second;
 }
 
-bool LoopRepair::try_alternatives(LoopChoice& best, std::size_t i) {
-  const auto count = static_cast<int>(links_[i].alternatives.size());
+bool EdgeMoves::try_alternatives(MapHypothesis& best, std::size_t i) {
+  const auto count = static_cast<int>(edges_[i].candidates.size());
   for (int choice = 0; choice < count && observer_.keep_going(); ++choice) {
-    if (choice == best.link_choice[i] || !is_new(i, choice, clusters_.size())) continue;
-    LoopChoice trial = best;
-    trial.link_choice[i] = choice;
-    const Pose2& a_from_b = links_[i].alternatives[static_cast<std::size_t>(choice)].a_from_b;
+    if (choice == best.edge_choice[i] || !is_new(i, choice, clusters_.size())) continue;
+    MapHypothesis trial = best;
+    trial.edge_choice[i] = choice;
+    const Pose2& a_from_b = edges_[i].candidates[static_cast<std::size_t>(choice)].a_from_b;
     swing(trial, i, trial.map_from_node[i] * a_from_b * inverse(trial.map_from_node[i + 1]));
-    const bool was_changed = best.link_choice[i] != 0;
+    const bool was_changed = best.edge_choice[i] != 0;
     if (better_when_closed(trial, best, was_changed ? kHopelessLoop : kHopelessLink)) return true;
   }
   return false;
 }
 
 /// A strong loop that does not fit: one of the alignments along it may be wrong.
-bool LoopRepair::try_cutting_for(LoopChoice& best, std::size_t k) {
+bool EdgeMoves::try_cutting_for(MapHypothesis& best, std::size_t k) {
   const PoseConstraint& loop = problem_.best_member(k);
   const std::vector<std::size_t> piece = pieces_of(problem_, best);
   if (piece[loop.a] != piece[loop.b]) return false;
   const std::vector<std::size_t> doubtful = doubtful_links(loop.a, loop.b, kDoubtfulPerLoop);
   for (const std::size_t i : doubtful) {
-    if (best.link_choice[i] == kCut || !observer_.keep_going() || !is_new(i, kCut, k)) continue;
-    LoopChoice trial = best;
-    trial.link_choice[i] = kCut;
+    if (best.edge_choice[i] == kCut || !observer_.keep_going() || !is_new(i, kCut, k)) continue;
+    MapHypothesis trial = best;
+    trial.edge_choice[i] = kCut;
     swing(trial, i, trial.map_from_node[loop.a] * loop.a_from_b * inverse(trial.map_from_node[loop.b]));
     trial.accepted[k] = 1;
     if (better_when_closed(trial, best, kHopelessLoop)) return true;
@@ -82,34 +82,34 @@ bool LoopRepair::try_cutting_for(LoopChoice& best, std::size_t k) {
 }
 
 /// The least probable of the links from node `first` to node `last`.
-std::vector<std::size_t> LoopRepair::doubtful_links(std::size_t first, std::size_t last, std::size_t count) const {
+std::vector<std::size_t> EdgeMoves::doubtful_links(std::size_t first, std::size_t last, std::size_t count) const {
   std::vector<std::size_t> doubtful;
   for (std::size_t i = first; i < last; ++i) {
-    if (links_[i].exists() && links_[i].probability < doubt_below_) doubtful.push_back(i);
+    if (edges_[i].exists() && edges_[i].probability < doubt_below_) doubtful.push_back(i);
   }
   std::stable_sort(doubtful.begin(), doubtful.end(),
-                   [&](std::size_t i, std::size_t j) { return links_[i].probability < links_[j].probability; });
+                   [&](std::size_t i, std::size_t j) { return edges_[i].probability < edges_[j].probability; });
   doubtful.resize(std::min(doubtful.size(), count));
   return doubtful;
 }
 
 /// Those that do not take what the chain took.
-std::vector<std::size_t> LoopRepair::changed_links(const LoopChoice& map) const {
+std::vector<std::size_t> EdgeMoves::changed_links(const MapHypothesis& map) const {
   std::vector<std::size_t> changed;
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (links_[i].exists() && map.link_choice[i] != 0) changed.push_back(i);
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    if (edges_[i].exists() && map.edge_choice[i] != 0) changed.push_back(i);
   }
   return changed;
 }
 
-void LoopRepair::repair(LoopChoice& best) {
+void EdgeMoves::repair(MapHypothesis& best) {
   for (const double doubt_below : {kVeryDoubtful * options_.doubt_below, options_.doubt_below}) {
     doubt_below_ = doubt_below;
     repair_doubtful(best);
   }
 }
 
-void LoopRepair::repair_doubtful(LoopChoice& best) {
+void EdgeMoves::repair_doubtful(MapHypothesis& best) {
   bool better = true;
   for (int round = 0; better && round < kRoundsOfRepair; ++round) {
     better = false;
@@ -120,8 +120,8 @@ void LoopRepair::repair_doubtful(LoopChoice& best) {
       better = try_cutting_for(best, k) || better;
     }
     for (const std::size_t i : changed_links(best)) better = try_alternatives(best, i) || better;
-    for (const std::size_t i : doubtful_links(0, links_.size(), static_cast<std::size_t>(options_.repairs))) {
-      if (best.link_choice[i] == 0) better = try_alternatives(best, i) || better;
+    for (const std::size_t i : doubtful_links(0, edges_.size(), static_cast<std::size_t>(options_.repairs))) {
+      if (best.edge_choice[i] == 0) better = try_alternatives(best, i) || better;
     }
   }
 }

@@ -14,33 +14,33 @@ namespace shapemap {
 
 /// Looks into what contradicts a map: a strong loop that does not fit, or a doubtful alignment, may show that another
 /// alignment is wrong, or a loop. Stops early when the observer asks to.
-class LoopRepair {
+class EdgeMoves {
  public:
-  LoopRepair(LoopProblem& problem, LoopCloser& closer, const std::vector<ChainLink>& links,
-             const std::vector<LoopCluster>& clusters, const MapSearchOptions& options, RunObserver& observer)
+  EdgeMoves(MapObjective& problem, LoopMoves& closer, const std::vector<EdgeChoices>& edges,
+            const std::vector<LoopCluster>& clusters, const MapSearchOptions& options, RunObserver& observer)
       : problem_(problem),
         closer_(closer),
-        links_(links),
+        edges_(edges),
         clusters_(clusters),
         options_(options),
         observer_(observer) {}
 
   /// The most doubtful links come first: a wrong loop that needs a better link cut must not get in their way.
-  void repair(LoopChoice& best);
+  void repair(MapHypothesis& best);
 
  private:
-  void swing(LoopChoice& map, std::size_t i, const Pose2& move) const;
-  bool better_when_closed(LoopChoice& trial, LoopChoice& best, double hopeless);
+  void swing(MapHypothesis& map, std::size_t i, const Pose2& move) const;
+  bool better_when_closed(MapHypothesis& trial, MapHypothesis& best, double hopeless);
   bool is_new(std::size_t link, int choice, std::size_t loop);
-  bool try_alternatives(LoopChoice& best, std::size_t i);
-  bool try_cutting_for(LoopChoice& best, std::size_t k);
+  bool try_alternatives(MapHypothesis& best, std::size_t i);
+  bool try_cutting_for(MapHypothesis& best, std::size_t k);
   std::vector<std::size_t> doubtful_links(std::size_t first, std::size_t last, std::size_t count) const;
-  std::vector<std::size_t> changed_links(const LoopChoice& map) const;
-  void repair_doubtful(LoopChoice& best);
+  std::vector<std::size_t> changed_links(const MapHypothesis& map) const;
+  void repair_doubtful(MapHypothesis& best);
 
-  LoopProblem& problem_;
-  LoopCloser& closer_;
-  const std::vector<ChainLink>& links_;
+  MapObjective& problem_;
+  LoopMoves& closer_;
+  const std::vector<EdgeChoices>& edges_;
   const std::vector<LoopCluster>& clusters_;
   const MapSearchOptions& options_;
   RunObserver& observer_;

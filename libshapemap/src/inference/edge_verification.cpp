@@ -39,13 +39,13 @@ constexpr double kNoneOfThem = -5.7;
 constexpr double kPerShortfall = 25.0;  ///< the less two scans see, the likelier; fitted to hard scenes
 
 /// By its two scans, and whether the map has it.
-double worth_by_itself(const DoubtfulLink& doubt, std::size_t k) {
-  const DoubtfulLink::Candidate& candidate = doubt.candidates[k];
+double worth_by_itself(const DoubtfulEdge& doubt, std::size_t k) {
+  const DoubtfulEdge::Candidate& candidate = doubt.candidates[k];
   return kPerScore * std::max(kLeastScore, candidate.score) - kPerLoose * std::log1p(candidate.best_deviation_m) +
          (k == 0 ? kOfMap : 0.0);
 }
 
-double worth_of_none(const DoubtfulLink& doubt) { return kNoneOfThem + kPerShortfall * doubt.view_shortfall; }
+double worth_of_none(const DoubtfulEdge& doubt) { return kNoneOfThem + kPerShortfall * doubt.insufficient_view; }
 
 bool is_same(const Pose2& a, const Pose2& b) {
   return (a.translation() - b.translation()).norm() < kSame_m && angle_between(a.theta_rad, b.theta_rad) < kSame_rad;
@@ -53,19 +53,19 @@ bool is_same(const Pose2& a, const Pose2& b) {
 
 /// How right it is to be at the candidate `one` when `other` is true: a place is right or not, but along a corridor it
 /// slides, and is the less right the farther.
-double share_right(const DoubtfulLink::Candidate& one, const Pose2& other) {
+double share_right(const DoubtfulEdge::Candidate& one, const Pose2& other) {
   if (is_same(one.a_from_b, other)) return 1.0;
   return std::max(0.0, 1.0 - deviations_off({0, 0, one.a_from_b, one.covariance, 0.0}, other) / kSameDeviations);
 }
 
 /// The best candidate by their `worths`, against all others, and none of them. Where nothing holds it along a corridor,
 /// it is right if any is that it may slide to.
-RevisedLink verdict_by(const std::vector<double>& worths, const DoubtfulLink& doubt) {
-  const std::vector<DoubtfulLink::Candidate>& candidates = doubt.candidates;
+VerifiedEdge verdict_by(const std::vector<double>& worths, const DoubtfulEdge& doubt) {
+  const std::vector<DoubtfulEdge::Candidate>& candidates = doubt.candidates;
   std::vector<std::size_t> order(worths.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t j, std::size_t k) { return worths[j] > worths[k]; });
-  const DoubtfulLink::Candidate& best = candidates[order.front()];
+  const DoubtfulEdge::Candidate& best = candidates[order.front()];
   double right = 0.0;
   double all = std::exp(worth_of_none(doubt) - worths[order.front()]);
   std::vector<Pose2> places;
@@ -84,24 +84,24 @@ RevisedLink verdict_by(const std::vector<double>& worths, const DoubtfulLink& do
 
 class Revision {
  public:
-  Revision(const NodeViews& views, const std::vector<DoubtfulLink>& doubtful, MapPieces pieces,
+  Revision(const NodeViews& views, const std::vector<DoubtfulEdge>& doubtful, Submaps pieces,
            const VisibilityOptions& visibility, int threads)
       : views_(views),
         doubtful_(doubtful),
         pieces_(std::move(pieces)),
         visibility_(visibility),
         threads_(threads),
-        links_(doubtful.size()),
+        edges_(doubtful.size()),
         is_stale_(doubtful.size(), 1) {}
 
-  RevisedMap run(double least_probability, RunObserver& observer) {
+  VerifiedMap run(double least_probability, RunObserver& observer) {
     while (observer.keep_going()) {
       const std::optional<std::size_t> next = most_probable(least_probability);
       if (!next) break;
       join(*next);
     }
     if (!observer.keep_going()) leave_as_they_were();
-    return {pieces_.map_from_node(), pieces_.piece_of_node(), links_};
+    return {pieces_.map_from_node(), pieces_.piece_of_node(), edges_};
   }
 
  private:
@@ -109,38 +109,38 @@ class Revision {
     std::optional<std::size_t> best;
     for (std::size_t d = 0; d < doubtful_.size(); ++d) {
       if (pieces_.is_joined(doubtful_[d].link)) continue;
-      if (is_stale_[d]) links_[d] = judged(d);
+      if (is_stale_[d]) edges_[d] = judged(d);
       is_stale_[d] = 0;
-      if (links_[d].probability < least_probability) continue;
-      if (!best || links_[d].probability > links_[*best].probability) best = d;
+      if (edges_[d].probability < least_probability) continue;
+      if (!best || edges_[d].probability > edges_[*best].probability) best = d;
     }
     return best;
   }
 
-  RevisedLink judged(std::size_t d) const {
-    const DoubtfulLink& doubt = doubtful_[d];
-    std::vector<Balance> balances(doubt.candidates.size());
+  VerifiedEdge judged(std::size_t d) const {
+    const DoubtfulEdge& doubt = doubtful_[d];
+    std::vector<EdgeSupport> balances(doubt.candidates.size());
     parallel_for(balances.size(), threads_,
-                 [&](std::size_t k) { balances[k] = said_by_others(doubt.link, doubt.candidates[k].a_from_b); });
-    std::vector<double> vouched = said_by_parallel(d);
+                 [&](std::size_t k) { balances[k] = support_by_others(doubt.link, doubt.candidates[k].a_from_b); });
+    std::vector<double> parallel_support = said_by_parallel(d);
     std::vector<double> worths;
     for (std::size_t k = 0; k < balances.size(); ++k) {
-      worths.push_back(worth_by_itself(doubt, k) + kByOthers * balances[k].value() + kByParallel * vouched[k]);
+      worths.push_back(worth_by_itself(doubt, k) + kByOthers * balances[k].value() + kByParallel * parallel_support[k]);
     }
-    RevisedLink verdict = verdict_by(worths, doubt);
-    verdict.said_by_others = std::move(balances);
-    verdict.vouched = std::move(vouched);
+    VerifiedEdge verdict = verdict_by(worths, doubt);
+    verdict.support_by_others = std::move(balances);
+    verdict.parallel_support = std::move(parallel_support);
     return verdict;
   }
 
   /// By all pairs of scans of the two pieces that a link joins, but for the two of the link.
-  Balance said_by_others(std::size_t link, const Pose2& a_from_b) const {
+  EdgeSupport support_by_others(std::size_t link, const Pose2& a_from_b) const {
     const std::vector<Pose2>& poses = pieces_.map_from_node();
     const std::vector<std::size_t>& piece = pieces_.piece_of_node();
     const Pose2 move = pieces_.moved_by(link, a_from_b);
     const std::size_t first = link + 1 - std::min(kWindow, link + 1);
     const std::size_t last = std::min(poses.size(), link + 1 + kWindow);
-    Balance balance;
+    EdgeSupport balance;
     for (std::size_t a = first; a < last; ++a) {
       if (piece[a] != piece[link]) continue;
       for (std::size_t b = first; b < last; ++b) {
@@ -148,7 +148,7 @@ class Revision {
         const Pose2 near_from_far = inverse(poses[a]) * (move * poses[b]);
         if (near_from_far.translation().norm() > kWithin_m) continue;
         balance.add(
-            MapEvidence::of_pair(shapemap::visibility(*views_[a], *views_[b], near_from_far, visibility_, kSlack)));
+            MapScore::of_pair(shapemap::visibility(*views_[a], *views_[b], near_from_far, visibility_, kSlack)));
       }
     }
     return balance;
@@ -157,11 +157,11 @@ class Revision {
   /// Of each candidate, how much more than none of its own the parallel link says for it that says most. The two do not
   /// tell independently of each other, so it counts in part.
   std::vector<double> said_by_parallel(std::size_t d) const {
-    const DoubtfulLink& doubt = doubtful_[d];
+    const DoubtfulEdge& doubt = doubtful_[d];
     std::vector<double> said(doubt.candidates.size(), 0.0);
     for (const std::size_t e : parallel_to(d)) {
       if (!are_near(d, e)) continue;
-      const DoubtfulLink& other = doubtful_[e];
+      const DoubtfulEdge& other = doubtful_[e];
       for (std::size_t j = 0; j < other.candidates.size(); ++j) {
         const Pose2 place = pieces_.carried_to(doubt.link, other.link, other.candidates[j].a_from_b);
         const double more_than_none = worth_by_itself(other, j) - worth_of_none(other);
@@ -189,16 +189,16 @@ class Revision {
   /// With the parallel links that say the same; those that say otherwise are no more probable than that it is wrong.
   void join(std::size_t d) {
     const std::size_t link = doubtful_[d].link;
-    const Pose2 a_from_b = doubtful_[d].candidates[links_[d].candidate].a_from_b;
-    const double probability = links_[d].probability;
+    const Pose2 a_from_b = doubtful_[d].candidates[edges_[d].candidate].a_from_b;
+    const double probability = edges_[d].probability;
     for (const std::size_t e : parallel_to(d)) {
       const Pose2 place = pieces_.carried_to(doubtful_[e].link, link, a_from_b);
       const std::optional<std::size_t> same = candidate_at(place, doubtful_[e], are_near(d, e));
-      links_[e].joins = same.has_value();
-      links_[e].candidate = same.value_or(links_[e].candidate);
-      links_[e].probability = same ? probability : std::min(links_[e].probability, 1.0 - probability);
+      edges_[e].joins = same.has_value();
+      edges_[e].candidate = same.value_or(edges_[e].candidate);
+      edges_[e].probability = same ? probability : std::min(edges_[e].probability, 1.0 - probability);
     }
-    links_[d].joins = true;
+    edges_[d].joins = true;
     pieces_.join(link, a_from_b);
     const std::vector<std::size_t>& piece = pieces_.piece_of_node();
     for (std::size_t e = 0; e < doubtful_.size(); ++e) {
@@ -208,7 +208,7 @@ class Revision {
   }
 
   /// That of the map where it is one, else the nearest. Along a long way more must be allowed for.
-  static std::optional<std::size_t> candidate_at(const Pose2& place, const DoubtfulLink& doubt, bool is_near) {
+  static std::optional<std::size_t> candidate_at(const Pose2& place, const DoubtfulEdge& doubt, bool is_near) {
     std::optional<std::size_t> nearest;
     double nearest_m = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < doubt.candidates.size(); ++k) {
@@ -227,28 +227,28 @@ class Revision {
     for (std::size_t d = 0; d < doubtful_.size(); ++d) {
       const std::size_t link = doubtful_[d].link;
       const Pose2& in_map = doubtful_[d].candidates.front().a_from_b;
-      if (links_[d].joins || (pieces_.is_joined(link) && !is_same(pieces_.step(link), in_map))) continue;
+      if (edges_[d].joins || (pieces_.is_joined(link) && !is_same(pieces_.step(link), in_map))) continue;
       if (!pieces_.is_joined(link)) pieces_.join(link, in_map);
-      links_[d] = {0, 0.0, true, {}, {}};
+      edges_[d] = {0, 0.0, true, {}, {}};
     }
   }
 
   const NodeViews& views_;
-  const std::vector<DoubtfulLink>& doubtful_;
-  MapPieces pieces_;
+  const std::vector<DoubtfulEdge>& doubtful_;
+  Submaps pieces_;
   const VisibilityOptions& visibility_;
   int threads_;
-  std::vector<RevisedLink> links_;
+  std::vector<VerifiedEdge> edges_;
   std::vector<char> is_stale_;
 };
 
 }  // namespace
 
-RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node,
-                        std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulLink>& doubtful,
-                        const VisibilityOptions& visibility, double least_probability, int threads,
-                        RunObserver& observer) {
-  MapPieces pieces(std::move(map_from_node), std::move(piece_of_node));
+VerifiedMap verify_edges(const NodeViews& views, std::vector<Pose2> map_from_node,
+                         std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulEdge>& doubtful,
+                         const VisibilityOptions& visibility, double least_probability, int threads,
+                         RunObserver& observer) {
+  Submaps pieces(std::move(map_from_node), std::move(piece_of_node));
   return Revision(views, doubtful, std::move(pieces), visibility, threads).run(least_probability, observer);
 }
 

@@ -15,15 +15,15 @@ constexpr std::size_t kJoiningNodes = 3;
 constexpr double kJoiningLead = 2.0;
 
 /// How the piece of the later node moves to where a loop wants it.
-Pose2 join(const LoopChoice& map, const PoseConstraint& loop) {
+Pose2 join(const MapHypothesis& map, const PoseConstraint& loop) {
   return map.map_from_node[loop.a] * loop.a_from_b * inverse(map.map_from_node[loop.b]);
 }
 
 }  // namespace
 
 /// Closes the loops that the map agrees with as it is.
-bool LoopCloser::close_agreeing(LoopChoice& map) {
-  LoopChoice trial = map;
+bool LoopMoves::close_agreeing(MapHypothesis& map) {
+  MapHypothesis trial = map;
   bool any = false;
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
     if (trial.accepted[k] || clusters_[k].strength < kLeastStrength) continue;
@@ -40,7 +40,7 @@ bool LoopCloser::close_agreeing(LoopChoice& map) {
 }
 
 /// Whether loop `k` may decide where two pieces are to each other.
-bool LoopCloser::can_join(const LoopChoice& map, const std::vector<std::size_t>& piece, std::size_t k) const {
+bool LoopMoves::can_join(const MapHypothesis& map, const std::vector<std::size_t>& piece, std::size_t k) const {
   const LoopCluster& cluster = clusters_[k];
   if (cluster.strength < kJoiningStrength || std::min(cluster.num_a, cluster.num_b) < kJoiningNodes) return false;
   const PoseConstraint& loop = problem_.best_member(k);
@@ -57,7 +57,7 @@ bool LoopCloser::can_join(const LoopChoice& map, const std::vector<std::size_t>&
 }
 
 /// Brings two pieces that nothing joins yet to where a loop wants them; false if it may not decide that.
-bool LoopCloser::join_pieces(LoopChoice& map, std::size_t k) const {
+bool LoopMoves::join_pieces(MapHypothesis& map, std::size_t k) const {
   const PoseConstraint& loop = problem_.best_member(k);
   const std::vector<std::size_t> piece = pieces_of(problem_, map);
   if (piece[loop.a] == piece[loop.b]) return true;
@@ -69,8 +69,8 @@ bool LoopCloser::join_pieces(LoopChoice& map, std::size_t k) const {
   return true;
 }
 
-bool LoopCloser::try_loop(LoopChoice& map, std::size_t k) {
-  LoopChoice trial = map;
+bool LoopMoves::try_loop(MapHypothesis& map, std::size_t k) {
+  MapHypothesis trial = map;
   if (!join_pieces(trial, k)) return false;
   trial.accepted[k] = 1;
   problem_.solve(trial);
@@ -82,7 +82,7 @@ bool LoopCloser::try_loop(LoopChoice& map, std::size_t k) {
   return true;
 }
 
-void LoopCloser::close(LoopChoice& map) {
+void LoopMoves::close(MapHypothesis& map) {
   bool again = true;
   for (int round = 0; again && round < kRoundsOfClosing; ++round) {
     again = false;
@@ -101,7 +101,7 @@ void LoopCloser::close(LoopChoice& map) {
   }
 }
 
-void LoopCloser::close_all_agreeing(LoopChoice& map) {
+void LoopMoves::close_all_agreeing(MapHypothesis& map) {
   while (observer_.keep_going() && close_agreeing(map)) {
   }
 }

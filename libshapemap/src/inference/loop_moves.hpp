@@ -11,29 +11,29 @@
 namespace shapemap {
 
 /// Per node: the first of those that what was decided joins it to.
-inline std::vector<std::size_t> pieces_of(const LoopProblem& problem, const LoopChoice& map) {
-  return connected_parts(problem.num_nodes(), problem.constraints(map));
+inline std::vector<std::size_t> pieces_of(const MapObjective& problem, const MapHypothesis& map) {
+  return connected_components(problem.num_nodes(), problem.constraints(map));
 }
 
 /// Closes the loops that gain. Stops early when the observer asks to.
-class LoopCloser {
+class LoopMoves {
  public:
-  LoopCloser(LoopProblem& problem, const std::vector<LoopCluster>& clusters, const MapSearchOptions& options,
-             RunObserver& observer)
+  LoopMoves(MapObjective& problem, const std::vector<LoopCluster>& clusters, const MapSearchOptions& options,
+            RunObserver& observer)
       : problem_(problem), clusters_(clusters), options_(options), observer_(observer) {}
 
   /// Closes all loops that gain, strongest first.
-  void close(LoopChoice& map);
+  void close(MapHypothesis& map);
   /// Only those that the map agrees with as it is.
-  void close_all_agreeing(LoopChoice& map);
+  void close_all_agreeing(MapHypothesis& map);
 
  private:
-  bool close_agreeing(LoopChoice& map);
-  bool can_join(const LoopChoice& map, const std::vector<std::size_t>& piece, std::size_t k) const;
-  bool join_pieces(LoopChoice& map, std::size_t k) const;
-  bool try_loop(LoopChoice& map, std::size_t k);
+  bool close_agreeing(MapHypothesis& map);
+  bool can_join(const MapHypothesis& map, const std::vector<std::size_t>& piece, std::size_t k) const;
+  bool join_pieces(MapHypothesis& map, std::size_t k) const;
+  bool try_loop(MapHypothesis& map, std::size_t k);
 
-  LoopProblem& problem_;
+  MapObjective& problem_;
   const std::vector<LoopCluster>& clusters_;
   const MapSearchOptions& options_;
   RunObserver& observer_;

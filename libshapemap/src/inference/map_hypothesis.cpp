@@ -38,7 +38,7 @@ std::vector<PoseConstraint> constraints_of(const LoopCluster& cluster) {
   std::vector<PoseConstraint> result;
   std::set<std::size_t> of_a;
   std::set<std::size_t> of_b;
-  for (const LoopHypothesis& member : cluster.members) {
+  for (const LoopCandidate& member : cluster.members) {
     if (result.size() == kMembersUsed) break;
     if (of_a.count(member.a) != 0 || of_b.count(member.b) != 0) continue;
     of_a.insert(member.a);
@@ -50,35 +50,35 @@ std::vector<PoseConstraint> constraints_of(const LoopCluster& cluster) {
 
 }  // namespace
 
-LoopProblem::LoopProblem(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<ChainLink>& links,
-                         const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
-                         const MapSearchOptions& options, int threads)
-    : links_(links),
+MapObjective::MapObjective(const std::vector<std::shared_ptr<const ScanView>>& views,
+                           const std::vector<EdgeChoices>& edges, const std::vector<LoopCluster>& clusters,
+                           const VisibilityOptions& visibility, const MapSearchOptions& options, int threads)
+    : edges_(edges),
       clusters_(clusters),
       options_(options),
-      evidence_(views, visibility, threads),
+      score_(views, visibility, threads),
       num_nodes_(views.size()),
-      usual_(usual_motion(sure_steps(links))) {
+      usual_(step_statistics(sure_steps(edges))) {
   for (const LoopCluster& cluster : clusters) loop_constraints_.push_back(constraints_of(cluster));
-  rivals_ = loop_rivals(clusters);
+  conflicts_ = conflicting_loops(clusters);
 }
 
-LoopChoice LoopProblem::undecided(std::vector<Pose2> map_from_node) const {
-  LoopChoice choice;
-  choice.link_choice.assign(links_.size(), kCut);
+MapHypothesis MapObjective::undecided(std::vector<Pose2> map_from_node) const {
+  MapHypothesis choice;
+  choice.edge_choice.assign(edges_.size(), kCut);
   choice.accepted.assign(clusters_.size(), 0);
   choice.refused_off.assign(clusters_.size(), Pose2{kPiecesApart_m, kPiecesApart_m, 0.0});
   choice.map_from_node = std::move(map_from_node);
   return choice;
 }
 
-LoopChoice LoopProblem::chain_alone() {
-  LoopChoice choice = undecided(std::vector<Pose2>(num_nodes_));
+MapHypothesis MapObjective::chain_alone() {
+  MapHypothesis choice = undecided(std::vector<Pose2>(num_nodes_));
   double next_piece_m = 0.0;
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (links_[i].exists()) {
-      choice.link_choice[i] = 0;
-      choice.map_from_node[i + 1] = choice.map_from_node[i] * links_[i].alternatives.front().a_from_b;
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    if (edges_[i].exists()) {
+      choice.edge_choice[i] = 0;
+      choice.map_from_node[i + 1] = choice.map_from_node[i] * edges_[i].candidates.front().a_from_b;
     } else {
       next_piece_m += kPiecesApart_m;
       choice.map_from_node[i + 1] = {next_piece_m, 0.0, 0.0};
@@ -88,32 +88,32 @@ LoopChoice LoopProblem::chain_alone() {
   return choice;
 }
 
-LoopChoice LoopProblem::of_map(std::vector<Pose2> map_from_node) {
-  LoopChoice choice = undecided(std::move(map_from_node));
-  for (std::size_t i = 0; i < links_.size(); ++i) {
+MapHypothesis MapObjective::of_map(std::vector<Pose2> map_from_node) {
+  MapHypothesis choice = undecided(std::move(map_from_node));
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
     const Pose2 taken = inverse(choice.map_from_node[i]) * choice.map_from_node[i + 1];
-    for (std::size_t k = 0; k < links_[i].alternatives.size() && choice.link_choice[i] == kCut; ++k) {
-      if (agrees(inverse(links_[i].alternatives[k].a_from_b) * taken)) choice.link_choice[i] = static_cast<int>(k);
+    for (std::size_t k = 0; k < edges_[i].candidates.size() && choice.edge_choice[i] == kCut; ++k) {
+      if (agrees(inverse(edges_[i].candidates[k].a_from_b) * taken)) choice.edge_choice[i] = static_cast<int>(k);
     }
   }
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
     choice.accepted[k] = clusters_[k].strength >= kLeastStrength && agrees(off(choice, k)) ? 1 : 0;
   }
-  for (std::size_t i = 0; i < links_.size(); ++i) {  // what nothing else joins stays with the chain
-    if (choice.link_choice[i] != kCut || !links_[i].exists()) continue;
-    const std::vector<std::size_t> part = connected_parts(num_nodes_, constraints(choice));
-    if (part[i] != part[i + 1]) choice.link_choice[i] = 0;
+  for (std::size_t i = 0; i < edges_.size(); ++i) {  // what nothing else joins stays with the chain
+    if (choice.edge_choice[i] != kCut || !edges_[i].exists()) continue;
+    const std::vector<std::size_t> part = connected_components(num_nodes_, constraints(choice));
+    if (part[i] != part[i + 1]) choice.edge_choice[i] = 0;
   }
   solve(choice);
   rate(choice);
   return choice;
 }
 
-std::vector<PoseConstraint> LoopProblem::constraints(const LoopChoice& choice) const {
+std::vector<PoseConstraint> MapObjective::constraints(const MapHypothesis& choice) const {
   std::vector<PoseConstraint> all;
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (choice.link_choice[i] == kCut) continue;
-    const ChainLink::Alternative& link = links_[i].alternatives[static_cast<std::size_t>(choice.link_choice[i])];
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    if (choice.edge_choice[i] == kCut) continue;
+    const EdgeChoices::Candidate& link = edges_[i].candidates[static_cast<std::size_t>(choice.edge_choice[i])];
     all.push_back({i, i + 1, link.a_from_b, link.covariance, 0.0});
   }
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
@@ -122,46 +122,46 @@ std::vector<PoseConstraint> LoopProblem::constraints(const LoopChoice& choice) c
   return all;
 }
 
-void LoopProblem::solve(LoopChoice& choice) const {
+void MapObjective::solve(MapHypothesis& choice) const {
   constexpr int kIterations = 20;
   PoseGraphSolution solution = solve_pose_graph(choice.map_from_node, constraints(choice), kIterations);
   choice.map_from_node = std::move(solution.map_from_node);
   choice.chi_square = solution.chi_square;
 }
 
-double LoopProblem::worth(std::size_t cluster) const {
+double MapObjective::worth(std::size_t cluster) const {
   return std::min(clusters_[cluster].strength, options_.trust_cap);
 }
 
-double LoopProblem::worth_in(const LoopChoice& choice, std::size_t cluster) const {
+double MapObjective::worth_in(const MapHypothesis& choice, std::size_t cluster) const {
   double strongest = 0.0;
-  for (const LoopRival& rival : rivals_[cluster]) {
+  for (const ConflictingLoop& rival : conflicts_[cluster]) {
     if (rival.strength <= strongest) continue;
     if (!is_within(off(choice, rival.cluster), kContradicts_m, kContradicts_rad)) strongest = rival.strength;
   }
   return std::clamp(clusters_[cluster].strength - strongest, 0.0, options_.trust_cap);
 }
 
-std::vector<std::size_t> LoopProblem::rings(const LoopChoice& choice) const {
+std::vector<std::size_t> MapObjective::rings(const MapHypothesis& choice) const {
   std::vector<PoseConstraint> held = constraints(choice);
-  const std::vector<bool> lone = lone_constraints(num_nodes_, held);
+  const std::vector<bool> lone = bridge_edges(num_nodes_, held);
   std::size_t c = 0;
   held.erase(std::remove_if(held.begin(), held.end(), [&](const PoseConstraint&) { return lone[c++]; }), held.end());
-  return connected_parts(num_nodes_, held);
+  return connected_components(num_nodes_, held);
 }
 
 /// Of alternatives that are not the best, of links that are cut, and of unusual steps and turns.
-double LoopProblem::cost_of_links(const LoopChoice& choice) const {
+double MapObjective::cost_of_links(const MapHypothesis& choice) const {
   double cost = 0.0;
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    const ChainLink& link = links_[i];
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    const EdgeChoices& link = edges_[i];
     if (!link.exists() || link.probability >= options_.doubt_below) continue;
-    if (choice.link_choice[i] == kCut) {
+    if (choice.edge_choice[i] == kCut) {
       const double p = std::clamp(std::max(link.probability, link.any_probability), 1e-3, 1.0 - 1e-6);
       cost += std::max(0.0, log_odds_of(p) + kPriorOfLinks);
     } else {
-      const auto taken = static_cast<std::size_t>(choice.link_choice[i]);
-      cost += link.alternatives.front().score - link.alternatives[taken].score + (taken == 0 ? 0.0 : kAgainstChain);
+      const auto taken = static_cast<std::size_t>(choice.edge_choice[i]);
+      cost += link.candidates.front().score - link.candidates[taken].score + (taken == 0 ? 0.0 : kAgainstChain);
     }
     const Pose2& from = choice.map_from_node[i];
     const Pose2& to = choice.map_from_node[i + 1];
@@ -174,12 +174,12 @@ double LoopProblem::cost_of_links(const LoopChoice& choice) const {
   return cost;
 }
 
-void LoopProblem::rate(LoopChoice& choice) {
-  choice.value = MapEvidence::kWeight * evidence_.of(choice.map_from_node, rings(choice)) - 0.5 * choice.chi_square -
+void MapObjective::rate(MapHypothesis& choice) {
+  choice.value = MapScore::kWeight * score_.of(choice.map_from_node, rings(choice)) - 0.5 * choice.chi_square -
                  cost_of_links(choice) + worth_of_loops(choice);
 }
 
-double LoopProblem::worth_of_loops(const LoopChoice& choice) const {
+double MapObjective::worth_of_loops(const MapHypothesis& choice) const {
   std::vector<std::size_t> closed;
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
     if (choice.accepted[k]) closed.push_back(k);
@@ -191,7 +191,7 @@ double LoopProblem::worth_of_loops(const LoopChoice& choice) const {
       alike.push_back({i, j, {}, Eigen::Matrix3d::Identity(), 0.0});
     }
   }
-  const std::vector<std::size_t> story = connected_parts(closed.size(), alike);
+  const std::vector<std::size_t> story = connected_components(closed.size(), alike);
   std::vector<double> sums(closed.size(), 0.0);
   for (std::size_t i = 0; i < closed.size(); ++i) sums[story[i]] += worth_in(choice, closed[i]);
   double worth = 0.0;
@@ -201,7 +201,7 @@ double LoopProblem::worth_of_loops(const LoopChoice& choice) const {
   return worth;
 }
 
-Pose2 LoopProblem::off(const LoopChoice& choice, std::size_t cluster) const {
+Pose2 MapObjective::off(const MapHypothesis& choice, std::size_t cluster) const {
   const PoseConstraint& best = best_member(cluster);
   return inverse(best.a_from_b) * (inverse(choice.map_from_node[best.a]) * choice.map_from_node[best.b]);
 }

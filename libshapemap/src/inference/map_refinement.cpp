@@ -46,7 +46,7 @@ std::vector<Neighbour> neighbours(const std::vector<Pose2>& poses, const Refinem
 }  // namespace
 
 RefinedMap refine_map(const std::vector<std::shared_ptr<const ScanView>>& views, std::vector<Pose2> map_from_node,
-                      const std::vector<PoseConstraint>& chain, const HypothesisSearchOptions& search,
+                      const std::vector<PoseConstraint>& chain, const MatchSearchOptions& search,
                       const RefinementOptions& options, int threads, RunObserver& observer) {
   RefinedMap map;
   for (int round = 0; round < options.rounds && observer.keep_going(); ++round) {
@@ -55,7 +55,7 @@ RefinedMap refine_map(const std::vector<std::shared_ptr<const ScanView>>& views,
     parallel_for(pairs.size(), threads, [&](std::size_t i) {
       const auto [a, b, unused] = pairs[i];
       const Pose2 expected = inverse(map_from_node[a]) * map_from_node[b];
-      const PoseHypothesis pose = refined_hypothesis(*views[a], *views[b], expected, search);
+      const MatchCandidate pose = refined_candidate(*views[a], *views[b], expected, search);
       const Pose2 off = inverse(expected) * pose.ref_from_query;
       const double agree = pose.visibility.agree / std::max(pose.visibility.total(), 1e-9);
       if (agree < options.least_agree || off.translation().norm() > options.most_off_m ||

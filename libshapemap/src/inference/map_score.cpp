@@ -39,12 +39,12 @@ bool is_asked(std::size_t a, std::size_t b) {
 
 }  // namespace
 
-double MapEvidence::of_pair(const Visibility& v) {
+double MapScore::of_pair(const Visibility& v) {
   const double total = std::max(v.total(), 1e-9);
   return 2.0 * std::log((0.2 + v.agree / total) / 0.2) - 2.0 * std::log((0.05 + v.crossed / total) / 0.05);
 }
 
-double MapEvidence::of(const std::vector<Pose2>& map_from_node, const std::vector<std::size_t>& ring_of_node) {
+double MapScore::of(const std::vector<Pose2>& map_from_node, const std::vector<std::size_t>& ring_of_node) {
   std::vector<RelativePose> pairs;
   for (const auto& [a, b] : near_pairs(map_from_node, kWithin_m)) {
     if (!is_asked(a, b)) continue;
@@ -54,8 +54,8 @@ double MapEvidence::of(const std::vector<Pose2>& map_from_node, const std::vecto
   return of_pairs(pairs);
 }
 
-double MapEvidence::between(const std::vector<Pose2>& pose_in_piece, const std::vector<std::size_t>& f,
-                            const std::vector<std::size_t>& g, const Pose2& f_from_g) {
+double MapScore::between(const std::vector<Pose2>& pose_in_piece, const std::vector<std::size_t>& f,
+                         const std::vector<std::size_t>& g, const Pose2& f_from_g) {
   std::vector<RelativePose> pairs;
   for (const std::size_t j : g) {
     const Pose2 there = f_from_g * pose_in_piece[j];
@@ -74,7 +74,7 @@ double MapEvidence::between(const std::vector<Pose2>& pose_in_piece, const std::
   return of_pairs(some, static_cast<double>(pairs.size()) / static_cast<double>(some.size()));
 }
 
-double MapEvidence::of_pairs(const std::vector<RelativePose>& pairs, double each_stands_for) {
+double MapScore::of_pairs(const std::vector<RelativePose>& pairs, double each_stands_for) {
   std::vector<Known*> known;
   known.reserve(pairs.size());
   std::vector<std::size_t> stale;

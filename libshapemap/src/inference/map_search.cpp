@@ -45,22 +45,22 @@ class StopSign : public RunObserver {
 };
 
 /// What another thread computes, which learns meanwhile when to stop.
-LoopChoice waited_for(std::future<LoopChoice>& result, StopSign& stop) {
+MapHypothesis waited_for(std::future<MapHypothesis>& result, StopSign& stop) {
   constexpr std::chrono::milliseconds kPatience{20};
   while (result.wait_for(kPatience) == std::future_status::timeout) stop.keep_going();
   return result.get();
 }
 
 /// The best of some maps that are assembled of pieces; no more are tried when several in a row are no better.
-LoopChoice assembled(LoopProblem& problem, const std::vector<ChainLink>& links,
-                     const std::vector<LoopHypothesis>& hypotheses, const std::vector<Pose2>& map_of_chain,
-                     const MapSearchOptions& options, RunObserver& observer) {
-  LoopChoice best;
+MapHypothesis assembled(MapObjective& problem, const std::vector<EdgeChoices>& edges,
+                        const std::vector<LoopCandidate>& candidates, const std::vector<Pose2>& map_of_odometry,
+                        const MapSearchOptions& options, RunObserver& observer) {
+  MapHypothesis best;
   int in_vain = 0;
   for (int variant = 0; variant < options.assemblies && in_vain < kAssembliesInVain; ++variant) {
     if (variant > 0 && !observer.keep_going()) break;
-    LoopChoice trial =
-        problem.of_map(assembled_map(links, hypotheses, map_of_chain, problem.evidence(), variant, observer));
+    MapHypothesis trial =
+        problem.of_map(merged_submaps(edges, candidates, map_of_odometry, problem.score(), variant, observer));
     const bool is_better =
         variant == 0 || trial.value > best.value + std::max(options.least_gain, kLeastGain * std::abs(best.value));
     in_vain = is_better ? 0 : in_vain + 1;
@@ -71,40 +71,40 @@ LoopChoice assembled(LoopProblem& problem, const std::vector<ChainLink>& links,
 
 }  // namespace
 
-LoopSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<ChainLink>& links,
-                         const std::vector<LoopHypothesis>& hypotheses, const std::vector<LoopCluster>& clusters,
-                         const VisibilityOptions& visibility, const MapSearchOptions& options, int threads,
-                         RunObserver& observer) {
+MapSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views,
+                        const std::vector<EdgeChoices>& edges, const std::vector<LoopCandidate>& candidates,
+                        const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
+                        const MapSearchOptions& options, int threads, RunObserver& observer) {
   // Each has evidence of its own, so that neither depends on how far the other has come.
-  LoopProblem of_chain(views, links, clusters, visibility, options, 1);
-  LoopProblem problem(views, links, clusters, visibility, options, threads);
+  MapObjective of_chain(views, edges, clusters, visibility, options, 1);
+  MapObjective problem(views, edges, clusters, visibility, options, threads);
   StopSign stop(observer);
-  const LoopChoice chain = of_chain.chain_alone();
+  const MapHypothesis chain = of_chain.chain_alone();
   const auto closed_chain = [&](RunObserver& asked) {
-    LoopChoice closed = chain;
-    LoopCloser(of_chain, clusters, options, asked).close(closed);
+    MapHypothesis closed = chain;
+    LoopMoves(of_chain, clusters, options, asked).close(closed);
     return closed;
   };
   StopSign::Reader reader(stop);
-  std::future<LoopChoice> meanwhile;
+  std::future<MapHypothesis> meanwhile;
   try {
     if (threads != 1) meanwhile = std::async(std::launch::async, closed_chain, std::ref(reader));
   } catch (const std::system_error&) {
     // No thread is to be had: it is done afterwards.
   }
-  LoopCloser closer(problem, clusters, options, stop);
-  LoopChoice best = assembled(problem, links, hypotheses, chain.map_from_node, options, stop);
+  LoopMoves closer(problem, clusters, options, stop);
+  MapHypothesis best = assembled(problem, edges, candidates, chain.map_from_node, options, stop);
   closer.close(best);
-  LoopChoice other = meanwhile.valid() ? waited_for(meanwhile, stop) : closed_chain(stop);
+  MapHypothesis other = meanwhile.valid() ? waited_for(meanwhile, stop) : closed_chain(stop);
   if (other.value > best.value) best = std::move(other);
-  LoopRepair(problem, closer, links, clusters, options, stop).repair(best);
-  LoopSolution solution;
-  solution.component = connected_parts(views.size(), problem.constraints(best));
+  EdgeMoves(problem, closer, edges, clusters, options, stop).repair(best);
+  MapSolution solution;
+  solution.component = connected_components(views.size(), problem.constraints(best));
   for (std::size_t k = 0; k < clusters.size(); ++k) {
     if (best.accepted[k]) solution.accepted.push_back(k);
   }
   solution.map_from_node = std::move(best.map_from_node);
-  solution.link_choice = std::move(best.link_choice);
+  solution.edge_choice = std::move(best.edge_choice);
   solution.value = best.value;
   return solution;
 }

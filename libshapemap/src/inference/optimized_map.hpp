@@ -13,10 +13,10 @@
 namespace shapemap {
 
 /// Where the keyframes are, and what holds them there.
-struct KeyframeMap {
+struct OptimizedMap {
   std::vector<Pose2> map_from_keyframe;
-  std::vector<int> link_choice;        ///< per link: which of its hypotheses; kCut: none
-  std::vector<bool> held_by_loops;     ///< per link: its two keyframes stay where they are without it
+  std::vector<int> edge_choice;        ///< per link: which of its hypotheses; kCut: none
+  std::vector<bool> loop_constrained;  ///< per link: its two keyframes stay where they are without it
   std::vector<std::size_t> component;  ///< per keyframe: the first of those that it hangs together with
   std::vector<ClosedLoop> loops;       ///< of positions
   /// Of keyframes, all that the map was solved with. None where it is only the chain.
@@ -24,20 +24,20 @@ struct KeyframeMap {
 };
 
 /// What the links say by the hypotheses that are chosen, but for those that are cut.
-std::vector<PoseConstraint> link_constraints(const KeyframeChain& chain, const std::vector<int>& link_choice);
+std::vector<PoseConstraint> edge_constraints(const KeyframeGraph& chain, const std::vector<int>& edge_choice);
 
 /// What becomes of a link that is improbable by itself, and alone holds what comes after it.
 enum class Improbable {
   kIsCut,
-  kStays,  ///< all scans of both sides will judge it: revise_doubtful_links()
+  kStays,  ///< all scans of both sides will judge it: verify_doubtful_edges()
 };
 
 /// The chain as it is: errors add up. Improbable links are cut.
-KeyframeMap map_of_chain(const KeyframeChain& chain, const RobustOptions& options);
+OptimizedMap map_of_odometry(const KeyframeGraph& chain, const RobustOptions& options);
 
 /// The chain with its loops closed, and all scans aligned to all that see the same. When the observer asks to stop,
 /// with the loops that are closed by then.
-KeyframeMap map_with_loops(const KeyframeChain& chain, const std::vector<LoopHypothesis>& hypotheses,
+OptimizedMap optimized_map(const KeyframeGraph& chain, const std::vector<LoopCandidate>& candidates,
                            Improbable improbable, const RobustOptions& options, const Execution& execution);
 
 }  // namespace shapemap

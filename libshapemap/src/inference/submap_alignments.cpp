@@ -30,7 +30,7 @@ std::size_t apart(std::size_t i, std::size_t j) { return i < j ? j - i : i - j; 
 
 }  // namespace
 
-PieceJoints::Seen PieceJoints::seen_from(std::size_t f, std::size_t joint) const {
+SubmapAlignments::Seen SubmapAlignments::seen_from(std::size_t f, std::size_t joint) const {
   const PoseConstraint& c = joints_[joint].constraint;
   const double worth = joints_[joint].worth;
   if (piece_of_node_[c.a] == f) {
@@ -39,7 +39,7 @@ PieceJoints::Seen PieceJoints::seen_from(std::size_t f, std::size_t joint) const
   return {joint, c.b, c.a, piece_from_node_[c.b] * inverse(c.a_from_b), piece_from_node_[c.a], worth};
 }
 
-bool PieceJoints::agree(const Pose2& f_from_g, const Seen& one, const Seen& seed) {
+bool SubmapAlignments::agree(const Pose2& f_from_g, const Seen& one, const Seen& seed) {
   const Pose2 expected = f_from_g * one.g_from_b;
   const auto nodes = static_cast<double>(apart(one.a, seed.a) + apart(one.b, seed.b));
   return (expected.translation() - one.f_from_b.translation()).norm() < kSame_m + kDrift_m * nodes &&
@@ -47,7 +47,7 @@ bool PieceJoints::agree(const Pose2& f_from_g, const Seen& one, const Seen& seed
 }
 
 /// The weighted mean of places and directions (Umeyama 1991).
-Pose2 PieceJoints::mean_of(const std::vector<Seen>& joints) {
+Pose2 SubmapAlignments::mean_of(const std::vector<Seen>& joints) {
   Point2 mean_f = Point2::Zero();
   Point2 mean_g = Point2::Zero();
   double sum = 0.0;
@@ -75,7 +75,7 @@ Pose2 PieceJoints::mean_of(const std::vector<Seen>& joints) {
 }
 
 /// As that of a cluster of loops: the best joint of each node, summed over the side that says less.
-double PieceJoints::strength(const std::vector<Seen>& joints) {
+double SubmapAlignments::strength(const std::vector<Seen>& joints) {
   std::map<std::size_t, double> by_f;
   std::map<std::size_t, double> by_g;
   for (const Seen& joint : joints) {
@@ -91,17 +91,17 @@ double PieceJoints::strength(const std::vector<Seen>& joints) {
   return std::min({of_f, of_g, kMostStrength});
 }
 
-std::vector<Way> PieceJoints::ways(std::size_t f, const std::vector<std::size_t>& between) const {
+std::vector<SubmapAlignment> SubmapAlignments::ways(std::size_t f, const std::vector<std::size_t>& between) const {
   std::vector<Seen> seen;
   for (const std::size_t joint : between) seen.push_back(seen_from(f, joint));
   std::stable_sort(seen.begin(), seen.end(),
                    [](const Seen& one, const Seen& other) { return one.worth > other.worth; });
-  std::vector<Way> found;
+  std::vector<SubmapAlignment> found;
   std::set<std::size_t> used;
   for (const Seen& seed : seen) {
     if (found.size() == kMostWays) break;
     if (used.count(seed.joint) != 0) continue;
-    Way way;
+    SubmapAlignment way;
     std::vector<Seen> agreeing;
     const Pose2 f_from_g = seed.f_from_b * inverse(seed.g_from_b);
     for (const Seen& joint : seen) {
@@ -116,7 +116,7 @@ std::vector<Way> PieceJoints::ways(std::size_t f, const std::vector<std::size_t>
   return found;
 }
 
-bool PieceJoints::holds(const Joint& joint) const {
+bool SubmapAlignments::holds(const SubmapCandidate& joint) const {
   const PoseConstraint& c = joint.constraint;
   const Pose2 off = inverse(c.a_from_b) * (inverse(piece_from_node_[c.a]) * piece_from_node_[c.b]);
   return is_within(off, kSame_m, kSame_rad);

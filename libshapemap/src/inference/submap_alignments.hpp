@@ -10,32 +10,32 @@
 namespace shapemap {
 
 /// An alignment of two scans that may be right.
-struct Joint {
+struct SubmapCandidate {
   PoseConstraint constraint;
   double worth = 0.0;  ///< logarithm of odds, limited
   double noise = 0.0;  ///< what a way gains that starts from it
 };
 
 /// The piece `f` and the piece `g` in one frame, and the joints that say so.
-struct Way {
+struct SubmapAlignment {
   Pose2 f_from_g;
   std::vector<std::size_t> joints;
   double gain = 0.0;
 };
 
 /// Joints by index, poses by node, each in the frame of its piece.
-class PieceJoints {
+class SubmapAlignments {
  public:
-  PieceJoints(const std::vector<Joint>& joints, const std::vector<Pose2>& piece_from_node,
-              const std::vector<std::size_t>& piece_of_node)
+  SubmapAlignments(const std::vector<SubmapCandidate>& joints, const std::vector<Pose2>& piece_from_node,
+                   const std::vector<std::size_t>& piece_of_node)
       : joints_(joints), piece_from_node_(piece_from_node), piece_of_node_(piece_of_node) {}
 
   /// What some of `between`, the joints of `f` and another piece, agree on; those of the best joints first, and no more
   /// than can be right.
-  std::vector<Way> ways(std::size_t f, const std::vector<std::size_t>& between) const;
+  std::vector<SubmapAlignment> ways(std::size_t f, const std::vector<std::size_t>& between) const;
 
   /// Whether a joint within a piece agrees with it.
-  bool holds(const Joint& joint) const;
+  bool holds(const SubmapCandidate& joint) const;
 
  private:
   /// A joint as from piece `f` to the other.
@@ -52,7 +52,7 @@ class PieceJoints {
   static Pose2 mean_of(const std::vector<Seen>& joints);
   static double strength(const std::vector<Seen>& joints);
 
-  const std::vector<Joint>& joints_;
+  const std::vector<SubmapCandidate>& joints_;
   const std::vector<Pose2>& piece_from_node_;
   const std::vector<std::size_t>& piece_of_node_;
 };

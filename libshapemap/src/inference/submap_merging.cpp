@@ -44,7 +44,7 @@ using PiecePair = std::pair<std::size_t, std::size_t>;
 
 /// The best way, and how much better it is than the next, or than none.
 struct Lead {
-  Way best;
+  SubmapAlignment best;
   double lead = 0.0;
   bool is_stale = false;  ///< one of the pieces has grown since
 };
@@ -56,32 +56,32 @@ double log_odds(double probability) {
 
 class Assembly {
  public:
-  Assembly(const std::vector<ChainLink>& links, std::vector<Pose2> map_of_chain, MapEvidence& evidence)
-      : links_(links),
-        chain_(map_of_chain),
-        pose_(std::move(map_of_chain)),
-        evidence_(evidence),
-        usual_step_m_(usual_motion(sure_steps(links)).step_m),
+  Assembly(const std::vector<EdgeChoices>& edges, std::vector<Pose2> map_of_odometry, MapScore& score)
+      : edges_(edges),
+        chain_(map_of_odometry),
+        pose_(std::move(map_of_odometry)),
+        score_(score),
+        usual_step_m_(step_statistics(sure_steps(edges)).step_m),
         piece_(pose_.size(), 0),
         log_(pose_.size(), 0) {
-    for (std::size_t i = 0; i < links.size(); ++i) {
+    for (std::size_t i = 0; i < edges.size(); ++i) {
       piece_[i + 1] = piece_[i] + (is_sure(i) ? 0 : 1);
-      log_[i + 1] = log_[i] + (links[i].exists() ? 0 : 1);
+      log_[i + 1] = log_[i] + (edges[i].exists() ? 0 : 1);
     }
     nodes_.resize(piece_.back() + 1);
     within_.resize(nodes_.size());
     for (std::size_t n = 0; n < piece_.size(); ++n) nodes_[piece_[n]].push_back(n);
   }
 
-  void add_joints(const std::vector<LoopHypothesis>& hypotheses) {
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-      const std::vector<ChainLink::Alternative>& alternatives = links_[i].alternatives;
-      for (const ChainLink::Alternative& way : alternatives) {
-        const double behind = std::min(0.0, way.score - alternatives.front().score);
-        add_joint({i, i + 1, way.a_from_b, way.covariance, kLoss}, log_odds(links_[i].probability * std::exp(behind)));
+  void add_joints(const std::vector<LoopCandidate>& loops) {
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
+      const std::vector<EdgeChoices::Candidate>& candidates = edges_[i].candidates;
+      for (const EdgeChoices::Candidate& way : candidates) {
+        const double behind = std::min(0.0, way.score - candidates.front().score);
+        add_joint({i, i + 1, way.a_from_b, way.covariance, kLoss}, log_odds(edges_[i].probability * std::exp(behind)));
       }
     }
-    for (const LoopHypothesis& loop : hypotheses) {
+    for (const LoopCandidate& loop : loops) {
       add_joint({loop.a, loop.b, loop.a_from_b, loop.covariance, kLoss}, loop.log_odds);
     }
   }
@@ -89,7 +89,7 @@ class Assembly {
   void disturb(int variant) {
     if (variant == 0) return;
     std::mt19937_64 random(static_cast<std::uint64_t>(variant));
-    for (Joint& joint : joints_) {
+    for (SubmapCandidate& joint : joints_) {
       const double share = std::ldexp(static_cast<double>(random() >> 11U), -53);
       joint.noise = kNoise * (2.0 * share - 1.0);
     }
@@ -107,7 +107,7 @@ class Assembly {
       }
       if (next->second.lead < 0.0) break;
       const PiecePair pair = next->first;
-      const Way way = std::move(next->second.best);
+      const SubmapAlignment way = std::move(next->second.best);
       lay_together(pair, way);
     }
     join_the_rest();
@@ -115,7 +115,7 @@ class Assembly {
   }
 
  private:
-  bool is_sure(std::size_t link) const { return links_[link].exists() && links_[link].probability >= kSure; }
+  bool is_sure(std::size_t link) const { return edges_[link].exists() && edges_[link].probability >= kSure; }
 
   void add_joint(const PoseConstraint& constraint, double odds) {
     if (log_[constraint.a] != log_[constraint.b]) return;
@@ -141,14 +141,13 @@ class Assembly {
   }
 
   Lead lead_of(const PiecePair& pair) {
-    std::vector<Way> ways = PieceJoints(joints_, pose_, piece_).ways(pair.first, between_[pair]);
-    const auto better = [](const Way& one, const Way& other) { return one.gain > other.gain; };
-    for (Way& way : ways) way.gain -= cost_of_steps(pair, way.f_from_g);
+    std::vector<SubmapAlignment> ways = SubmapAlignments(joints_, pose_, piece_).ways(pair.first, between_[pair]);
+    const auto better = [](const SubmapAlignment& one, const SubmapAlignment& other) { return one.gain > other.gain; };
+    for (SubmapAlignment& way : ways) way.gain -= cost_of_steps(pair, way.f_from_g);
     std::stable_sort(ways.begin(), ways.end(), better);
     ways.resize(std::min(ways.size(), kWaysTried));
-    for (Way& way : ways) {
-      way.gain +=
-          MapEvidence::kWeight * evidence_.between(pose_, nodes_[pair.first], nodes_[pair.second], way.f_from_g);
+    for (SubmapAlignment& way : ways) {
+      way.gain += MapScore::kWeight * score_.between(pose_, nodes_[pair.first], nodes_[pair.second], way.f_from_g);
     }
     std::stable_sort(ways.begin(), ways.end(), better);
     const double second = ways.size() > 1 ? std::max(0.0, ways[1].gain) : 0.0;
@@ -156,7 +155,7 @@ class Assembly {
   }
 
   /// Whether all that is known of how the two pieces lie to each other is of one pair of scans.
-  bool is_hinge(const Way& way) const {
+  bool is_hinge(const SubmapAlignment& way) const {
     const PoseConstraint& first = joints_[way.joints.front()].constraint;
     return std::all_of(way.joints.begin(), way.joints.end(), [&](std::size_t joint) {
       const PoseConstraint& constraint = joints_[joint].constraint;
@@ -164,7 +163,7 @@ class Assembly {
     });
   }
 
-  void lay_together(const PiecePair& pair, const Way& way) {
+  void lay_together(const PiecePair& pair, const SubmapAlignment& way) {
     const auto [f, g] = pair;
     for (const std::size_t n : nodes_[g]) {
       pose_[n] = way.f_from_g * pose_[n];
@@ -229,11 +228,11 @@ class Assembly {
     std::vector<Pose2> poses;
     for (const std::size_t n : nodes) {
       poses.push_back(pose_[n]);
-      if (n >= links_.size() || !is_sure(n)) continue;
-      const ChainLink::Alternative& link = links_[n].alternatives.front();
+      if (n >= edges_.size() || !is_sure(n)) continue;
+      const EdgeChoices::Candidate& link = edges_[n].candidates.front();
       add({n, n + 1, link.a_from_b, link.covariance, 0.0});
     }
-    const PieceJoints pieces(joints_, pose_, piece_);
+    const SubmapAlignments pieces(joints_, pose_, piece_);
     const std::set<std::size_t> decided(taken.begin(), taken.end());
     for (const std::size_t joint : within_[f]) {
       if (decided.count(joint) != 0 || pieces.holds(joints_[joint])) add(joints_[joint].constraint);
@@ -243,7 +242,7 @@ class Assembly {
   }
 
   void join_the_rest() {
-    for (std::size_t i = 0; i < links_.size(); ++i) {
+    for (std::size_t i = 0; i < edges_.size(); ++i) {
       const std::size_t f = piece_[i];
       const std::size_t g = piece_[i + 1];
       if (f == g) continue;
@@ -257,15 +256,15 @@ class Assembly {
     }
   }
 
-  const std::vector<ChainLink>& links_;
+  const std::vector<EdgeChoices>& edges_;
   std::vector<Pose2> chain_;
   std::vector<Pose2> pose_;  ///< in the frame of the piece
-  MapEvidence& evidence_;
+  MapScore& score_;
   double usual_step_m_;
   std::vector<std::size_t> piece_;               ///< of each node
   std::vector<std::size_t> log_;                 ///< of each node: alignments of the chain join all of one log
   std::vector<std::vector<std::size_t>> nodes_;  ///< of each piece, in order
-  std::vector<Joint> joints_;
+  std::vector<SubmapCandidate> joints_;
   std::vector<std::vector<std::size_t>> within_;  ///< joints of each piece
   std::map<PiecePair, std::vector<std::size_t>> between_;
   std::map<PiecePair, Lead> leads_;
@@ -273,12 +272,12 @@ class Assembly {
 
 }  // namespace
 
-std::vector<Pose2> assembled_map(const std::vector<ChainLink>& links, const std::vector<LoopHypothesis>& hypotheses,
-                                 std::vector<Pose2> map_of_chain, MapEvidence& evidence, int variant,
-                                 RunObserver& observer) {
-  if (map_of_chain.size() < 2) return map_of_chain;
-  Assembly assembly(links, std::move(map_of_chain), evidence);
-  assembly.add_joints(hypotheses);
+std::vector<Pose2> merged_submaps(const std::vector<EdgeChoices>& edges, const std::vector<LoopCandidate>& candidates,
+                                  std::vector<Pose2> map_of_odometry, MapScore& score, int variant,
+                                  RunObserver& observer) {
+  if (map_of_odometry.size() < 2) return map_of_odometry;
+  Assembly assembly(edges, std::move(map_of_odometry), score);
+  assembly.add_joints(candidates);
   assembly.disturb(variant);
   return assembly.run(observer);
 }

@@ -3,11 +3,11 @@
 
 namespace shapemap {
 
-Pose2 MapPieces::moved_by(std::size_t link, const Pose2& a_from_b) const {
+Pose2 Submaps::moved_by(std::size_t link, const Pose2& a_from_b) const {
   return map_from_node_[link] * a_from_b * inverse(map_from_node_[link + 1]);
 }
 
-void MapPieces::join(std::size_t link, const Pose2& a_from_b) {
+void Submaps::join(std::size_t link, const Pose2& a_from_b) {
   const Pose2 move = moved_by(link, a_from_b);
   const std::size_t from = piece_of_node_[link + 1];
   for (std::size_t n = 0; n < map_from_node_.size(); ++n) {
@@ -17,7 +17,7 @@ void MapPieces::join(std::size_t link, const Pose2& a_from_b) {
   }
 }
 
-bool MapPieces::are_parallel(std::size_t link, std::size_t other) const {
+bool Submaps::are_parallel(std::size_t link, std::size_t other) const {
   const auto joins = [&](std::size_t from, std::size_t to) {
     return piece_of_node_[other] == from && piece_of_node_[other + 1] == to;
   };
@@ -26,7 +26,7 @@ bool MapPieces::are_parallel(std::size_t link, std::size_t other) const {
   return from != to && (joins(from, to) || joins(to, from));
 }
 
-Pose2 MapPieces::carried_to(std::size_t link, std::size_t parallel, const Pose2& a_from_b) const {
+Pose2 Submaps::carried_to(std::size_t link, std::size_t parallel, const Pose2& a_from_b) const {
   const Pose2 move = moved_by(parallel, a_from_b);
   const bool is_same_direction = piece_of_node_[parallel] == piece_of_node_[link];
   return inverse(map_from_node_[link]) * (is_same_direction ? move : inverse(move)) * map_from_node_[link + 1];

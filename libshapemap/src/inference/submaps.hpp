@@ -9,9 +9,9 @@
 namespace shapemap {
 
 /// A map in pieces, each right in itself, in one frame. Link i is what node i + 1 is to node i.
-class MapPieces {
+class Submaps {
  public:
-  MapPieces(std::vector<Pose2> map_from_node, std::vector<std::size_t> piece_of_node)
+  Submaps(std::vector<Pose2> map_from_node, std::vector<std::size_t> piece_of_node)
       : map_from_node_(std::move(map_from_node)), piece_of_node_(std::move(piece_of_node)) {}
 
   const std::vector<Pose2>& map_from_node() const { return map_from_node_; }

@@ -3,17 +3,17 @@
 
 #include <vector>
 
-#include "shapemap/core/execution.hpp"
 #include "graph/keyframe_graph.hpp"
 #include "optimized_map.hpp"
+#include "shapemap/core/execution.hpp"
 
 namespace shapemap {
 
 /// Where the sub-scans of keyframes are in their position, by keyframe; none: all at their nominal places.
-using SubScanCorrections = std::vector<std::vector<Pose2>>;
+using SweepCorrections = std::vector<std::vector<Pose2>>;
 
 /// Refines the poses of `map` and of all sub-scans. Changes nothing where each position has one sub-scan.
-SubScanCorrections refine_sub_scans_of_map(const KeyframeChain& chain, const RobustOptions& options,
-                                           const Execution& execution, KeyframeMap& map);
+SweepCorrections refine_sweeps_of_map(const KeyframeGraph& chain, const RobustOptions& options,
+                                      const Execution& execution, OptimizedMap& map);
 
 }  // namespace shapemap

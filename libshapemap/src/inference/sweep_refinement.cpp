@@ -33,7 +33,7 @@ constexpr double kMostOff_rad = 4 * kDegree;
 
 class Refinement {
  public:
-  Refinement(const SubScanViews& views, const std::vector<Pose2>& map_from_node,
+  Refinement(const SweepViews& views, const std::vector<Pose2>& map_from_node,
              const std::vector<std::size_t>& part_of_node, const PointToLineOptions& line,
              const SweepRefinementOptions& options, int threads)
       : views_(views), part_of_node_(part_of_node), line_(line), options_(options), threads_(threads) {
@@ -66,13 +66,13 @@ class Refinement {
     poses_ = solve_pose_graph(poses_, constraints, kIterations).map_from_node;
   }
 
-  SubScanPoses result() const {
-    SubScanPoses result;
+  SweepPoses result() const {
+    SweepPoses result;
     for (std::size_t node = 0; node < views_.size(); ++node) {
       result.map_from_node.push_back(poses_[node]);
-      result.node_from_sub_scan.emplace_back();
+      result.node_from_sweep.emplace_back();
       for (std::size_t s = 0; s < views_[node].size(); ++s) {
-        result.node_from_sub_scan.back().push_back(inverse(poses_[node]) * poses_[first_[node] + s]);
+        result.node_from_sweep.back().push_back(inverse(poses_[node]) * poses_[first_[node] + s]);
       }
     }
     return result;
@@ -140,7 +140,7 @@ class Refinement {
     return PoseConstraint{pair.a, pair.b, fit.ref_from_query, pose_covariance(fit, kNoise), kLoss};
   }
 
-  const SubScanViews& views_;
+  const SweepViews& views_;
   const std::vector<std::size_t>& part_of_node_;
   PointToLineOptions line_;
   const SweepRefinementOptions& options_;
@@ -152,10 +152,10 @@ class Refinement {
 
 }  // namespace
 
-SubScanPoses refine_sub_scans(const SubScanViews& views, const std::vector<Pose2>& map_from_node,
-                              const std::vector<std::size_t>& part_of_node, const std::vector<PoseConstraint>& known,
-                              const PointToLineOptions& line, const SweepRefinementOptions& options, int threads,
-                              RunObserver& observer) {
+SweepPoses refine_sweeps(const SweepViews& views, const std::vector<Pose2>& map_from_node,
+                         const std::vector<std::size_t>& part_of_node, const std::vector<PoseConstraint>& known,
+                         const PointToLineOptions& line, const SweepRefinementOptions& options, int threads,
+                         RunObserver& observer) {
   Refinement refinement(views, map_from_node, part_of_node, line, options, threads);
   refinement.hold(known);
   for (int round = 0; round < options.rounds && observer.keep_going(); ++round) refinement.run_round(round);

@@ -31,7 +31,7 @@ class BareReader {
   }
 
  private:
-  SubScan read_scan(Words& words) {
+  Sweep read_scan(Words& words) {
     const std::size_t num_beams = words.count_left();
     if (num_beams < 2) throw lines_.error("one number, expected a scan of two or more");
     if (num_beams_ == 0) num_beams_ = num_beams;
@@ -39,7 +39,7 @@ class BareReader {
       throw lines_.error(std::to_string(num_beams) + " numbers, but the lines before have " +
                          std::to_string(num_beams_));
     }
-    SubScan scan;
+    Sweep scan;
     scan.sensor_label = kLabel;
     scan.first_angle_rad = -options_.fov_rad / 2;
     scan.angle_step_rad = options_.fov_rad / static_cast<double>(num_beams - 1);
@@ -54,20 +54,20 @@ class BareReader {
     return scan;
   }
 
-  void add(SubScan scan) {
+  void add(Sweep scan) {
     const auto wanted = static_cast<std::size_t>(options_.sub_scans_per_position);
-    if (log_.positions.empty() || log_.positions.back().sub_scans.size() == wanted) {
-      Position position;
-      position.timestamp_s = static_cast<double>(log_.positions.size());  // nothing else is known
-      log_.positions.push_back(std::move(position));
+    if (log_.scans.empty() || log_.scans.back().sweeps.size() == wanted) {
+      Scan position;
+      position.timestamp_s = static_cast<double>(log_.scans.size());  // nothing else is known
+      log_.scans.push_back(std::move(position));
     }
-    std::vector<SubScan>& sub_scans = log_.positions.back().sub_scans;
-    scan.nominal_heading_rad = wrap_angle(static_cast<double>(sub_scans.size()) * options_.sub_scan_turn_rad);
-    sub_scans.push_back(std::move(scan));
+    std::vector<Sweep>& sweeps = log_.scans.back().sweeps;
+    scan.nominal_heading_rad = wrap_angle(static_cast<double>(sweeps.size()) * options_.sub_scan_turn_rad);
+    sweeps.push_back(std::move(scan));
   }
 
   void warn_of_incomplete_position() {
-    const std::size_t got = log_.positions.back().sub_scans.size();
+    const std::size_t got = log_.scans.back().sweeps.size();
     const auto wanted = static_cast<std::size_t>(options_.sub_scans_per_position);
     if (got == wanted) return;
     log_.warnings.push_back(source_.path() + ": the last position has only " + std::to_string(got) + " of " +

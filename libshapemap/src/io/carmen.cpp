@@ -74,8 +74,8 @@ class CarmenReader {
     while (const std::optional<std::string_view> line = lines_.next()) read_line(*line);
     choice_.report(source_.path(), log_);
     finish_log(source_, log_);
-    for (Position& position : log_.positions) {
-      for (SubScan& scan : position.sub_scans) {
+    for (Scan& position : log_.scans) {
+      for (Sweep& scan : position.sweeps) {
         if (scan.sensor_label == "FLASER") scan.max_range_m = param_max_range_m_;  // may come after the first scans
       }
     }
@@ -116,14 +116,14 @@ class CarmenReader {
   }
 
   void read_flaser(Words& words) {
-    SubScan scan;
+    Sweep scan;
     scan.ranges_m = read_ranges(words, lines_);
     set_flaser_angles(scan);
     scan.sensor_label = "FLASER";
     add(std::move(scan), read_poses(words, kFlaserPoses));
   }
 
-  void set_flaser_angles(SubScan& scan) {
+  void set_flaser_angles(Sweep& scan) {
     const std::size_t num_beams = scan.ranges_m.size();
     if (num_beams == 0) return;
     if (options_.fov_rad > 0.0) {
@@ -142,7 +142,7 @@ class CarmenReader {
   }
 
   void read_robot_laser(Words& words) {
-    SubScan scan;
+    Sweep scan;
     words.skip(1);  // laser type
     const double start_rad = read_finite(words, lines_, "the start angle");
     const double fov_rad = read_finite(words, lines_, "the field of view");
@@ -157,7 +157,7 @@ class CarmenReader {
     add(std::move(scan), read_poses(words, kRobotLaserPoses));
   }
 
-  void set_robot_laser_angles(double start_rad, double fov_rad, double resolution_rad, SubScan& scan) {
+  void set_robot_laser_angles(double start_rad, double fov_rad, double resolution_rad, Sweep& scan) {
     StatedAngles stated;
     stated.first_rad = start_rad;
     if (resolution_rad != 0.0) stated.step_rad = resolution_rad;
@@ -215,18 +215,18 @@ class CarmenReader {
     return read;
   }
 
-  void add(SubScan scan, const PosesAndTime& poses) {
+  void add(Sweep scan, const PosesAndTime& poses) {
     scan.robot_from_sensor = mount_;
     mount_ = MountPose{};
     lines_.require_plausible(scan);
     lines_.refuse(implausible_time(poses.timestamp_s));
-    if (!joins_previous_ || log_.positions.empty()) {
-      log_.positions.emplace_back();
-      log_.positions.back().timestamp_s = poses.timestamp_s;
-      log_.positions.back().recorded_heading_rad = poses.heading_rad;
+    if (!joins_previous_ || log_.scans.empty()) {
+      log_.scans.emplace_back();
+      log_.scans.back().timestamp_s = poses.timestamp_s;
+      log_.scans.back().recorded_heading_rad = poses.heading_rad;
     }
     joins_previous_ = false;
-    log_.positions.back().sub_scans.push_back(std::move(scan));
+    log_.scans.back().sweeps.push_back(std::move(scan));
   }
 
   ByteSource& source_;

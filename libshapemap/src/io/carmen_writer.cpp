@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kHeader = "# CARMEN log written by shapemap; poses are estimates, zero where there are none\n";
 
-bool fits_flaser(const SubScan& scan) {
+bool fits_flaser(const Sweep& scan) {
   if (!scan.is_evenly_spaced()) return false;
   const std::optional<double> step_rad = flaser_step_rad(scan.ranges_m.size());
   return step_rad && std::abs(scan.angle_step_rad - *step_rad) < 1e-9 &&
@@ -29,9 +29,9 @@ bool fits_flaser(const SubScan& scan) {
 /// for the whole log, since readers take two kinds for two lasers.
 std::optional<double> flaser_max_range_m(const Log& log) {
   std::optional<double> max_range_m;
-  for (const Position& position : log.positions) {
-    if (position.sub_scans.size() != 1 || !fits_flaser(position.sub_scans.front())) return std::nullopt;
-    const double scan_max_m = position.sub_scans.front().max_range_m;
+  for (const Scan& position : log.scans) {
+    if (position.sweeps.size() != 1 || !fits_flaser(position.sweeps.front())) return std::nullopt;
+    const double scan_max_m = position.sweeps.front().max_range_m;
     if (max_range_m && *max_range_m != scan_max_m) return std::nullopt;
     max_range_m = scan_max_m;
   }
@@ -62,7 +62,7 @@ class CarmenText {
 };
 
 /// Every reading that is a hit by the scan's own limits, 0 for the others: CARMEN knows no minimum and no flags.
-void write_ranges(const SubScan& scan, CarmenText& line) {
+void write_ranges(const Sweep& scan, CarmenText& line) {
   const RangeLimits limits = range_limits(scan, ReturnOptions{});
   line << scan.ranges_m.size();
   std::string text;
@@ -79,16 +79,16 @@ void write_ranges(const SubScan& scan, CarmenText& line) {
 
 void write_time(double timestamp_s, CarmenText& line) { line << timestamp_s << " shapemap" << timestamp_s << "\n"; }
 
-void write_flaser(const SubScan& scan, const Pose2& map_from_robot, double timestamp_s, CarmenText& line) {
+void write_flaser(const Sweep& scan, const Pose2& map_from_robot, double timestamp_s, CarmenText& line) {
   line << "FLASER";
   write_ranges(scan, line);
   line << map_from_robot << map_from_robot;
   write_time(timestamp_s, line);
 }
 
-void write_robot_laser(const SubScan& clockwise_or_not, const Pose2& map_from_robot, double timestamp_s,
+void write_robot_laser(const Sweep& clockwise_or_not, const Pose2& map_from_robot, double timestamp_s,
                        CarmenText& line) {
-  const SubScan scan = counterclockwise(on_even_beams(clockwise_or_not));
+  const Sweep scan = counterclockwise(on_even_beams(clockwise_or_not));
   const MountPose mount = mount_with_heading(scan);
   if (!(mount == MountPose{})) {
     line << "# shapemap mount" << mount.x_m << mount.y_m << mount.z_m << mount.yaw_rad << mount.pitch_rad
@@ -112,11 +112,11 @@ void write_carmen(const Log& log, const LogPoses* poses, ByteSink& sink) {
     line << "PARAM robot_front_laser_max" << *flaser_max_m << " shapemap 0\n";
     sink.write(line.text());
   }
-  for (std::size_t i = 0; i < log.positions.size(); ++i) {
-    const Position& position = log.positions[i];
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    const Scan& position = log.scans[i];
     const Pose2 map_from_robot = poses != nullptr ? poses->map_from_robot[i] : Pose2{};
     bool is_first = true;
-    for (const SubScan& scan : position.sub_scans) {
+    for (const Sweep& scan : position.sweeps) {
       CarmenText line;
       if (!is_first) line << "# shapemap same-position\n";
       is_first = false;

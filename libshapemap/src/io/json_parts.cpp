@@ -40,8 +40,8 @@ Json ranked_json(const RankedPose& ranked) {
           {"partners", ranked.partners}};
 }
 
-bool was_aligned(const PositionResult& position) {
-  return position.alignment.status != AlignStatus::kNoShape || !position.reason.empty();
+bool was_aligned(const ScanResult& position) {
+  return position.alignment.status != MatchStatus::kNoShape || !position.reason.empty();
 }
 
 double shown(double stored, double unit) {

@@ -31,7 +31,7 @@ void LaserChoice::report(const std::string& path, Log& log) const {
   for (const auto& [label, count] : left_out_) {
     others += (others.empty() ? "" : ", ") + quoted(label) + " (" + std::to_string(count) + " scans)";
   }
-  if (log.positions.empty() && !wanted_.empty() && !others.empty()) {
+  if (log.scans.empty() && !wanted_.empty() && !others.empty()) {
     throw InputError(path + ": no scans of a laser called " + quoted(wanted_) + "; the log has " + others);
   }
   if (wanted_.empty() && !others.empty()) {
@@ -41,12 +41,12 @@ void LaserChoice::report(const std::string& path, Log& log) const {
 }
 
 void finish_log(const ByteSource& source, Log& log) {
-  if (log.positions.empty()) {
+  if (log.scans.empty()) {
     if (!source.cut().empty()) throw InputError(source.path() + ": " + source.cut() + ", no whole scan before that");
     throw InputError(source.path() + ": no 2D laser scans in it");
   }
   if (!source.cut().empty()) {
-    log.warnings.push_back(source.path() + ": " + source.cut() + "; the " + std::to_string(log.positions.size()) +
+    log.warnings.push_back(source.path() + ": " + source.cut() + "; the " + std::to_string(log.scans.size()) +
                            " positions before that are used");
   }
 }
@@ -80,8 +80,8 @@ void settle_range_unit(const std::string& path, RangeUnit unit, Log& log) {
 }
 
 void turn_upside_down(Log& log) {
-  for (Position& position : log.positions) {
-    for (SubScan& scan : position.sub_scans) {
+  for (Scan& position : log.scans) {
+    for (Sweep& scan : position.sweeps) {
       scan.robot_from_sensor.roll_rad = wrap_angle(scan.robot_from_sensor.roll_rad + kPi);
     }
   }
@@ -98,7 +98,7 @@ Log read_log(const std::string& path, LogFormat format, const LogReadOptions& op
   const std::size_t num_of_reader = log.warnings.size();
   sort_out_no_returns(log, no_returns);
   for (std::size_t i = num_of_reader; i < log.warnings.size(); ++i) log.warnings[i] = path + ": " + log.warnings[i];
-  for (const std::string& line : mend_timestamps(log.positions).lines()) log.warnings.push_back(path + ": " + line);
+  for (const std::string& line : mend_timestamps(log.scans).lines()) log.warnings.push_back(path + ": " + line);
   if (options.upside_down) turn_upside_down(log);
   return log;
 }
@@ -110,9 +110,9 @@ std::string what_is_lost(const Log& log, LogFormat format) {
   bool uneven = false;
   bool timed = false;
   bool intense = false;
-  for (const Position& position : log.positions) {
+  for (const Scan& position : log.scans) {
     references = references || position.reference_pose.has_value();
-    for (const SubScan& scan : position.sub_scans) {
+    for (const Sweep& scan : position.sweeps) {
       headings = headings || scan.nominal_heading_rad != 0.0;
       uneven = uneven || !scan.is_evenly_spaced();
       timed = timed || scan.start_s != 0.0 || scan.beam_time_step_s > 0.0 || !scan.beam_times_s.empty();
@@ -133,9 +133,9 @@ std::string what_is_lost(const Log& log, LogFormat format) {
 
 void write_log(const Log& log, const std::string& path, LogFormat format, const LogPoses* poses) {
   if (format == LogFormat::kAuto) throw OutputError(path + ": a format to write must be named: rawlog, carmen or nist");
-  if (poses != nullptr && poses->map_from_robot.size() != log.positions.size()) {
+  if (poses != nullptr && poses->map_from_robot.size() != log.scans.size()) {
     throw OutputError(path + ": " + std::to_string(poses->map_from_robot.size()) + " poses for " +
-                      std::to_string(log.positions.size()) + " positions");
+                      std::to_string(log.scans.size()) + " positions");
   }
   // MRPT's own tools always compress their .rawlog files; they read nothing else without asking.
   const bool compress = format == LogFormat::kRawlog || ends_with(path, ".gz");

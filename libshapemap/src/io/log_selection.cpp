@@ -10,18 +10,18 @@ namespace shapemap {
 
 Log select_positions(Log log, const SelectionOptions& options) {
   validate(options);
-  const std::size_t num_positions = log.positions.size();
+  const std::size_t num_scans = log.scans.size();
   const auto skip = static_cast<std::size_t>(options.skip);
-  if (num_positions > 0 && skip >= num_positions) {
-    throw ConfigError("--skip " + std::to_string(skip) + " leaves nothing of a log with " +
-                      std::to_string(num_positions) + " positions");
+  if (num_scans > 0 && skip >= num_scans) {
+    throw ConfigError("--skip " + std::to_string(skip) + " leaves nothing of a log with " + std::to_string(num_scans) +
+                      " positions");
   }
-  std::vector<Position> selected;
-  for (std::size_t i = skip; i < num_positions; i += static_cast<std::size_t>(options.every)) {
+  std::vector<Scan> selected;
+  for (std::size_t i = skip; i < num_scans; i += static_cast<std::size_t>(options.every)) {
     if (options.first > 0 && selected.size() == static_cast<std::size_t>(options.first)) break;
-    selected.push_back(std::move(log.positions[i]));
+    selected.push_back(std::move(log.scans[i]));
   }
-  log.positions = std::move(selected);
+  log.scans = std::move(selected);
   return log;
 }
 

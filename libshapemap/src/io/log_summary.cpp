@@ -17,7 +17,7 @@ struct Count {
   std::size_t num_returns = 0;
 };
 
-LogSummary::Sensor first_seen(const SubScan& scan) {
+LogSummary::Sensor first_seen(const Sweep& scan) {
   LogSummary::Sensor sensor;
   sensor.label = scan.sensor_label;
   sensor.max_range_m = scan.max_range_m;
@@ -25,13 +25,13 @@ LogSummary::Sensor first_seen(const SubScan& scan) {
   return sensor;
 }
 
-double fov_rad(const SubScan& scan) {
+double fov_rad(const Sweep& scan) {
   if (scan.is_evenly_spaced()) return std::abs(scan.angle_step_rad) * static_cast<double>(scan.ranges_m.size() - 1);
   const auto [lowest, highest] = std::minmax_element(scan.beam_angles_rad.begin(), scan.beam_angles_rad.end());
   return *highest - *lowest;
 }
 
-void add_beams(const SubScan& scan, LogSummary::Sensor& sensor) {
+void add_beams(const Sweep& scan, LogSummary::Sensor& sensor) {
   const std::size_t num_beams = scan.ranges_m.size();
   if (num_beams == 0) {
     ++sensor.num_without_readings;
@@ -44,8 +44,8 @@ void add_beams(const SubScan& scan, LogSummary::Sensor& sensor) {
   sensor.sweep_s = std::max(sensor.sweep_s, scan.beam_time_s(num_beams - 1) - scan.beam_time_s(0));
 }
 
-void add(const SubScan& scan, LogSummary::Sensor& sensor, Count& count) {
-  ++sensor.num_sub_scans;
+void add(const Sweep& scan, LogSummary::Sensor& sensor, Count& count) {
+  ++sensor.num_sweeps;
   add_beams(scan, sensor);
   const std::size_t num_returns_before = count.num_returns;
   const RangeLimits limits = range_limits(scan, ReturnOptions{});
@@ -62,17 +62,17 @@ void add(const SubScan& scan, LogSummary::Sensor& sensor, Count& count) {
 
 }  // namespace
 
-LogSummary summarise(const Log& log) { return summarise(log, 0, log.positions.size()); }
+LogSummary summarise(const Log& log) { return summarise(log, 0, log.scans.size()); }
 
 LogSummary summarise(const Log& log, std::size_t first, std::size_t last) {
   LogSummary summary;
   summary.format = log.format;
-  summary.num_positions = last - first;
+  summary.num_scans = last - first;
   if (first == last) return summary;
-  const auto begin = log.positions.begin() + static_cast<std::ptrdiff_t>(first);
-  const auto end = log.positions.begin() + static_cast<std::ptrdiff_t>(last);
-  const auto [earliest, latest] = std::minmax_element(
-      begin, end, [](const Position& a, const Position& b) { return a.timestamp_s < b.timestamp_s; });
+  const auto begin = log.scans.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto end = log.scans.begin() + static_cast<std::ptrdiff_t>(last);
+  const auto [earliest, latest] =
+      std::minmax_element(begin, end, [](const Scan& a, const Scan& b) { return a.timestamp_s < b.timestamp_s; });
   summary.duration_s = latest->timestamp_s - earliest->timestamp_s;
   for (const NoReturnLevel& level : log.no_returns) {
     if (part_with(log, first) <= level.log && level.log <= part_with(log, last - 1))
@@ -81,7 +81,7 @@ LogSummary summarise(const Log& log, std::size_t first, std::size_t last) {
   std::vector<Count> counts;
   std::map<std::string, std::size_t, std::less<>> index_of_label;  // a damaged log may have a label for each scan
   for (auto position = begin; position != end; ++position) {
-    for (const SubScan& scan : position->sub_scans) {
+    for (const Sweep& scan : position->sweeps) {
       const auto [known, is_new] = index_of_label.try_emplace(scan.sensor_label, summary.sensors.size());
       const std::size_t index = known->second;
       if (is_new) {

@@ -38,7 +38,7 @@ std::string yaml_string(const std::string& text) {
 
 }  // namespace
 
-std::string ros_map_yaml(const GridMap& map, const std::string& image_name) {
+std::string ros_map_yaml(const OccupancyGrid& map, const std::string& image_name) {
   std::ostringstream yaml;
   yaml << "image: " << yaml_string(image_name) << "\n"
        << "resolution: " << exact(map.resolution_m) << "\n"
@@ -49,16 +49,15 @@ std::string ros_map_yaml(const GridMap& map, const std::string& image_name) {
   return yaml.str();
 }
 
-std::string tum_trajectory(const std::vector<PlacedPosition>& placed) {
+std::string tum_trajectory(const std::vector<PlacedScan>& placed) {
   std::string lines;
   char line[256];
-  for (const PlacedPosition& place : placed) {
+  for (const PlacedScan& place : placed) {
     const Pose2& pose = place.map_from_robot;
     const int length = std::snprintf(line, sizeof line, "%.9f %.9f %.9f 0 0 0 %.12f %.12f\n", place.timestamp_s,
                                      pose.x_m, pose.y_m, std::sin(pose.theta_rad / 2), std::cos(pose.theta_rad / 2));
     if (length < 0 || length >= static_cast<int>(sizeof line)) {
-      throw OutputError("position " + std::to_string(place.position_index) +
-                        " has a timestamp or pose beyond all bounds");
+      throw OutputError("position " + std::to_string(place.scan_index) + " has a timestamp or pose beyond all bounds");
     }
     lines += line;
   }

@@ -56,7 +56,7 @@ std::string length_text(double length_m) {
 }
 
 /// A strip above the picture with a scale bar, where it hides nothing. Not below: the lower left corner is the origin.
-cv::Mat with_scale_bar(const cv::Mat& image, const GridMap& map, const cv::Scalar& ink) {
+cv::Mat with_scale_bar(const cv::Mat& image, const OccupancyGrid& map, const cv::Scalar& ink) {
   const double length_m = scale_bar_length_m(map.width_cells * map.resolution_m);
   const int length = std::max(1, static_cast<int>(std::lround(length_m / map.resolution_m)));
   const int size = std::clamp(std::min(image.cols, image.rows) / 200, 1, 8);
@@ -73,9 +73,10 @@ cv::Mat with_scale_bar(const cv::Mat& image, const GridMap& map, const cv::Scala
   return framed;
 }
 
-void draw_path(cv::Mat& image, const GridMap& map, const std::vector<PlacedPosition>& placed, const Palette& palette) {
+void draw_path(cv::Mat& image, const OccupancyGrid& map, const std::vector<PlacedScan>& placed,
+               const Palette& palette) {
   std::vector<cv::Point> path;
-  for (const PlacedPosition& place : placed) {
+  for (const PlacedScan& place : placed) {
     const Eigen::Vector2i pixel = map.pixel_at(place.map_from_robot.translation());
     path.emplace_back(pixel.x(), pixel.y());
   }
@@ -87,7 +88,7 @@ void draw_path(cv::Mat& image, const GridMap& map, const std::vector<PlacedPosit
 
 }  // namespace
 
-void write_map_image(const GridMap& map, const std::string& path, const std::vector<PlacedPosition>* path_to_draw) {
+void write_map_image(const OccupancyGrid& map, const std::string& path, const std::vector<PlacedScan>* path_to_draw) {
   const std::string extension = extension_of(path);
   if (extension != ".png" && extension != ".pgm" && extension != ".tif") {
     throw OutputError("'" + path + "' is no picture we write; its name must end in .png, .pgm or .tif");

@@ -28,7 +28,7 @@ constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 31U;
 }
 
 /// One number for a key; positions are fewer than kMostPositions.
-std::uint64_t packed(const AlignmentKey& key) {
+std::uint64_t packed(const MatchKey& key) {
   return std::uint64_t{key.reference} << 33U | std::uint64_t{key.query} << 2U | static_cast<std::uint64_t>(key.search);
 }
 
@@ -56,7 +56,7 @@ std::optional<AlignmentRecord> read_record(int descriptor, std::uint64_t offset,
   return alignment_record(*head, read_at(descriptor, offset + kRecordHeadBytes, head->num_bytes, path));
 }
 
-std::uint64_t record_size(const AlignmentRecord& record) { return record_bytes(record.key, record.hypotheses).size(); }
+std::uint64_t record_size(const AlignmentRecord& record) { return record_bytes(record.key, record.candidates).size(); }
 
 bool is_synced(int descriptor) { return ::fdatasync(descriptor) == 0 || errno == EINVAL || errno == EROFS; }
 
@@ -71,9 +71,8 @@ void sync_folder_of(const std::string& path) {
 
 }  // namespace
 
-AlignmentStoreFile::AlignmentStoreFile(std::string path, StateOpening opening, const Log& log,
-                                       const MappingOptions& options)
-    : path_(std::move(path)), num_positions_(log.positions.size()) {
+MatchCacheFile::MatchCacheFile(std::string path, StateOpening opening, const Log& log, const MappingOptions& options)
+    : path_(std::move(path)), num_positions_(log.scans.size()) {
   if (num_positions_ >= kMostPositions) fail(path_, "the log has too many positions");
   const std::string header = state_header(log, options);
   try {
@@ -90,12 +89,12 @@ AlignmentStoreFile::AlignmentStoreFile(std::string path, StateOpening opening, c
   last_sync_ = std::chrono::steady_clock::now();
 }
 
-AlignmentStoreFile::~AlignmentStoreFile() {
+MatchCacheFile::~MatchCacheFile() {
   ::fdatasync(descriptor_);
   ::close(descriptor_);
 }
 
-void AlignmentStoreFile::open(StateOpening opening) {
+void MatchCacheFile::open(StateOpening opening) {
   struct stat status {};
   if (::stat(path_.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) fail(path_, "it is not a file");
   int flags = O_RDWR | O_CLOEXEC;
@@ -112,7 +111,7 @@ void AlignmentStoreFile::open(StateOpening opening) {
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) fail(path_, "another run has it open");
 }
 
-void AlignmentStoreFile::begin(const std::string& header, bool is_new) {
+void MatchCacheFile::begin(const std::string& header, bool is_new) {
   try {
     if (::ftruncate(descriptor_, 0) != 0) fail(path_, std::strerror(errno));
     append(header);
@@ -124,7 +123,7 @@ void AlignmentStoreFile::begin(const std::string& header, bool is_new) {
   sync_folder_of(path_);
 }
 
-void AlignmentStoreFile::resume(const std::string& header) {
+void MatchCacheFile::resume(const std::string& header) {
   const std::string found = read_at(descriptor_, 0, kMostHeaderBytes, path_);
   if (found.size() < header.size() && header.compare(0, found.size(), found) == 0) {
     warning_ = "'" + path_ + "' ends after " + std::to_string(found.size()) + " bytes, before its first alignment";
@@ -137,7 +136,7 @@ void AlignmentStoreFile::resume(const std::string& header) {
   index_records(header.size());
 }
 
-void AlignmentStoreFile::index_records(std::uint64_t first) {
+void MatchCacheFile::index_records(std::uint64_t first) {
   struct stat status {};
   if (::fstat(descriptor_, &status) != 0) throw InputError("cannot read '" + path_ + "': " + std::strerror(errno));
   const auto size = static_cast<std::uint64_t>(status.st_size);
@@ -155,7 +154,7 @@ void AlignmentStoreFile::index_records(std::uint64_t first) {
              ": the " + std::to_string(num_resumed_) + " alignments before it are used, the rest is made again";
 }
 
-std::optional<std::vector<PoseHypothesis>> AlignmentStoreFile::find(const AlignmentKey& key) {
+std::optional<std::vector<MatchCandidate>> MatchCacheFile::find(const MatchKey& key) {
   std::uint64_t offset = 0;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -165,11 +164,11 @@ std::optional<std::vector<PoseHypothesis>> AlignmentStoreFile::find(const Alignm
   }
   std::optional<AlignmentRecord> record = read_record(descriptor_, offset, path_);
   if (!record || packed(record->key) != packed(key)) return std::nullopt;  // changed meanwhile: it is made again
-  return std::move(record->hypotheses);
+  return std::move(record->candidates);
 }
 
-void AlignmentStoreFile::keep(const AlignmentKey& key, const std::vector<PoseHypothesis>& hypotheses) {
-  const std::string bytes = record_bytes(key, hypotheses);
+void MatchCacheFile::keep(const MatchKey& key, const std::vector<MatchCandidate>& candidates) {
+  const std::string bytes = record_bytes(key, candidates);
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (record_at_.count(packed(key)) > 0) return;
@@ -184,7 +183,7 @@ void AlignmentStoreFile::keep(const AlignmentKey& key, const std::vector<PoseHyp
 }
 
 /// What cannot be written whole is taken back.
-void AlignmentStoreFile::append(const std::string& bytes) {
+void MatchCacheFile::append(const std::string& bytes) {
   std::size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t count =

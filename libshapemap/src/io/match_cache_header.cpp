@@ -43,9 +43,9 @@ class Fingerprint {
 /// All of a log that alignments depend on.
 std::string fingerprint(const Log& log) {
   Fingerprint print;
-  for (const Position& position : log.positions) {
-    print.add(static_cast<std::uint64_t>(position.sub_scans.size()));
-    for (const SubScan& scan : position.sub_scans) {
+  for (const Scan& position : log.scans) {
+    print.add(static_cast<std::uint64_t>(position.sweeps.size()));
+    for (const Sweep& scan : position.sweeps) {
       print.add(static_cast<std::uint64_t>(scan.ranges_m.size()));
       for (const float range_m : scan.ranges_m) print.add(range_m);
       for (const double angle_rad : scan.beam_angles_rad) print.add(angle_rad);
@@ -120,16 +120,16 @@ std::string text_difference(Lines found, Lines expected) {
 }  // namespace
 
 std::string state_header(const Log& log, const MappingOptions& options) {
-  std::string text = "shapemap = " + std::string(kVersion) + "\npositions = " + std::to_string(log.positions.size()) +
+  std::string text = "shapemap = " + std::string(kVersion) + "\npositions = " + std::to_string(log.scans.size()) +
                      "\nreadings = " + fingerprint(log) + "\n";
-  const HypothesisSearchOptions& search = options.robust.matcher.search;
+  const MatchSearchOptions& search = options.robust.matcher.search;
   append_options(text, options.deskew);
   append_options(text, options.returns);
   append_options(text, options.polylines);
   append_options(text, options.shape);
   append_options(text, options.robust.matcher.view);
   append_options(text, search.voting);
-  append_options(text, search.hypotheses);
+  append_options(text, search.candidates);
   append_options(text, search.visibility);
   append_options(text, search.line);
   std::string header(kMagic);

@@ -53,13 +53,13 @@ void visit_numbers(Hypothesis& h, Visit&& visit) {
   visit(h.fit.lever_m);
 }
 
-void append_hypothesis(std::string& bytes, const PoseHypothesis& hypothesis) {
-  visit_numbers(hypothesis, [&](double number) {
+void append_hypothesis(std::string& bytes, const MatchCandidate& candidate) {
+  visit_numbers(candidate, [&](double number) {
     std::uint64_t word = 0;
     std::memcpy(&word, &number, sizeof word);
     append_word(bytes, word);
   });
-  append_word(bytes, static_cast<std::uint64_t>(hypothesis.fit.partners));
+  append_word(bytes, static_cast<std::uint64_t>(candidate.fit.partners));
 }
 
 bool is_plausible(const Pose2& pose) {
@@ -79,7 +79,7 @@ bool is_plausible(const LineFit& fit) {
 }
 
 /// A checksum tells damage from what was written, not who wrote it. False for NaN.
-bool is_plausible(const PoseHypothesis& h) {
+bool is_plausible(const MatchCandidate& h) {
   const Visibility& v = h.visibility;
   for (const double weight : {v.agree, v.crossed, v.hidden, v.unclear, v.outside, v.cross_agree, v.cross_total}) {
     if (!(weight >= 0.0 && weight <= kMostWeight)) return false;
@@ -88,18 +88,18 @@ bool is_plausible(const PoseHypothesis& h) {
          std::abs(h.score) <= kMostScore;
 }
 
-std::optional<PoseHypothesis> hypothesis_at(std::string_view bytes, std::size_t offset) {
-  PoseHypothesis hypothesis;
-  visit_numbers(hypothesis, [&](double& number) {
+std::optional<MatchCandidate> candidate_at(std::string_view bytes, std::size_t offset) {
+  MatchCandidate candidate;
+  visit_numbers(candidate, [&](double& number) {
     const std::uint64_t word = word_at(bytes, offset);
     std::memcpy(&number, &word, sizeof number);
     offset += kWordBytes;
   });
   const std::uint64_t partners = word_at(bytes, offset);
   if (partners > kMostPartners) return std::nullopt;
-  hypothesis.fit.partners = static_cast<int>(partners);
-  if (!is_plausible(hypothesis)) return std::nullopt;
-  return hypothesis;
+  candidate.fit.partners = static_cast<int>(partners);
+  if (!is_plausible(candidate)) return std::nullopt;
+  return candidate;
 }
 
 }  // namespace
@@ -121,13 +121,13 @@ std::uint32_t checksum_of(std::string_view bytes) {
       crc32_z(0, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<z_size_t>(bytes.size())));
 }
 
-std::string record_bytes(const AlignmentKey& key, const std::vector<PoseHypothesis>& hypotheses) {
+std::string record_bytes(const MatchKey& key, const std::vector<MatchCandidate>& candidates) {
   std::string body;
-  body.reserve(kKeyBytes + kHypothesisBytes * hypotheses.size());
+  body.reserve(kKeyBytes + kHypothesisBytes * candidates.size());
   append_word(body, key.reference);
   append_word(body, key.query);
   append_word(body, static_cast<std::uint64_t>(key.search));
-  for (const PoseHypothesis& hypothesis : hypotheses) append_hypothesis(body, hypothesis);
+  for (const MatchCandidate& candidate : candidates) append_hypothesis(body, candidate);
   std::string bytes;
   bytes.reserve(kRecordHeadBytes + body.size());
   append_u32(bytes, static_cast<std::uint32_t>(body.size()));
@@ -149,9 +149,9 @@ std::optional<AlignmentRecord> alignment_record(const RecordHead& head, std::str
   AlignmentRecord record;
   record.key = {word_at(body, 0), word_at(body, kWordBytes), static_cast<SearchKind>(search)};
   for (std::size_t at = kKeyBytes; at < body.size(); at += kHypothesisBytes) {
-    std::optional<PoseHypothesis> hypothesis = hypothesis_at(body, at);
-    if (!hypothesis) return std::nullopt;
-    record.hypotheses.push_back(*std::move(hypothesis));
+    std::optional<MatchCandidate> candidate = candidate_at(body, at);
+    if (!candidate) return std::nullopt;
+    record.candidates.push_back(*std::move(candidate));
   }
   return record;
 }

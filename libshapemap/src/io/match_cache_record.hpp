@@ -21,8 +21,8 @@ struct RecordHead {
 };
 
 struct AlignmentRecord {
-  AlignmentKey key;
-  std::vector<PoseHypothesis> hypotheses;
+  MatchKey key;
+  std::vector<MatchCandidate> candidates;
 };
 
 void append_u32(std::string& bytes, std::uint32_t value);
@@ -30,7 +30,7 @@ std::uint32_t u32_at(std::string_view bytes, std::size_t offset);
 std::uint32_t checksum_of(std::string_view bytes);
 
 /// Head and body.
-std::string record_bytes(const AlignmentKey& key, const std::vector<PoseHypothesis>& hypotheses);
+std::string record_bytes(const MatchKey& key, const std::vector<MatchCandidate>& candidates);
 
 /// Nothing for a size that no body has; `bytes` are kRecordHeadBytes.
 std::optional<RecordHead> record_head(std::string_view bytes);

@@ -5,7 +5,7 @@
 
 namespace shapemap {
 
-MountPose mount_with_heading(const SubScan& scan) {
+MountPose mount_with_heading(const Sweep& scan) {
   MountPose mount = scan.robot_from_sensor;
   if (scan.nominal_heading_rad == 0.0) return mount;
   const Point2 turned = rotate(Point2(mount.x_m, mount.y_m), scan.nominal_heading_rad);
@@ -15,7 +15,7 @@ MountPose mount_with_heading(const SubScan& scan) {
   return mount;
 }
 
-SubScan counterclockwise(SubScan scan) {
+Sweep counterclockwise(Sweep scan) {
   if (scan.angle_step_rad >= 0.0 || scan.ranges_m.empty() || !scan.is_evenly_spaced()) return scan;
   scan.first_angle_rad = scan.beam_angle_rad(scan.ranges_m.size() - 1);
   scan.angle_step_rad = -scan.angle_step_rad;

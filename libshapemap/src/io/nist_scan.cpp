@@ -22,7 +22,7 @@ class FieldReader {
 
   /// A field that may stand with a sensor or a scan; false when it is none.
   bool read_shared(std::string_view field, NistHeader& header) {
-    SubScan& scan = header.scan;
+    Sweep& scan = header.scan;
     if (field == "first_angle") {
       header.angles.first_rad = any_number("first_angle") * units_.radians_per_unit;
       header.has_own_angles = true;
@@ -139,12 +139,12 @@ struct Lists {
   std::vector<double> intensities;
 };
 
-void require_as_many(std::size_t count, const char* what, const SubScan& scan, const LineReader& lines) {
+void require_as_many(std::size_t count, const char* what, const Sweep& scan, const LineReader& lines) {
   if (count == scan.ranges_m.size()) return;
   throw lines.error(std::to_string(count) + " " + what + " for " + std::to_string(scan.ranges_m.size()) + " readings");
 }
 
-void check_num_readings(const NistHeader& sensor, const SubScan& scan, const LineReader& lines) {
+void check_num_readings(const NistHeader& sensor, const Sweep& scan, const LineReader& lines) {
   const std::size_t num_values = scan.ranges_m.size();
   if (!sensor.num_beams || num_values == *sensor.num_beams) return;
   throw lines.error((num_values < *sensor.num_beams ? "too few values: " : "too many values: ") +
@@ -152,7 +152,7 @@ void check_num_readings(const NistHeader& sensor, const SubScan& scan, const Lin
                     std::to_string(*sensor.num_beams) + " beams");
 }
 
-void set_even_angles(const NistHeader& header, SubScan& scan, const LineReader& lines, NistOddities& oddities) {
+void set_even_angles(const NistHeader& header, Sweep& scan, const LineReader& lines, NistOddities& oddities) {
   const std::optional<EvenBeams> beams = even_beams(header.angles, scan.ranges_m.size());
   if (!beams && header.has_own_angles) {
     ++oddities.num_without;
@@ -169,7 +169,7 @@ void set_even_angles(const NistHeader& header, SubScan& scan, const LineReader& 
   if (beams->source == AngleSource::kLimits) ++oddities.num_by_limits;
 }
 
-void set_lists(const Lists& lists, SubScan& scan, const LineReader& lines) {
+void set_lists(const Lists& lists, Sweep& scan, const LineReader& lines) {
   if (lists.has_times) {
     require_as_many(lists.times_s.size(), "times", scan, lines);
     scan.beam_times_s.assign(lists.times_s.begin(), lists.times_s.end());
@@ -209,11 +209,11 @@ NistHeader read_nist_sensor(Words& words, const LineReader& lines, const NistUni
   return sensor;
 }
 
-SubScan read_nist_scan(Words& words, const LineReader& lines, const NistUnits& units, const NistHeader& sensor,
-                       NistOddities& oddities) {
+Sweep read_nist_scan(Words& words, const LineReader& lines, const NistUnits& units, const NistHeader& sensor,
+                     NistOddities& oddities) {
   NistHeader header = sensor;
   header.has_own_angles = false;
-  SubScan& scan = header.scan;
+  Sweep& scan = header.scan;
   FieldReader fields(words, lines, units);
   Lists lists;
   bool has_ranges = false;

@@ -21,7 +21,7 @@ struct NistUnits {
 
 /// What a `sensor` line says of the scans of a laser, and a `scan` line of one of them.
 struct NistHeader {
-  SubScan scan;                          ///< without readings
+  Sweep scan;                            ///< without readings
   StatedAngles angles;                   ///< of evenly spaced beams
   std::optional<std::size_t> num_beams;  ///< nothing: any
   bool has_own_angles = false;           ///< something was said of them on this very line
@@ -38,7 +38,7 @@ struct NistOddities {
 };
 
 /// Reads a `scan` line from behind the sensor's name on; what it does not say is as `sensor` says. Throws InputError.
-SubScan read_nist_scan(Words& words, const LineReader& lines, const NistUnits& units, const NistHeader& sensor,
-                       NistOddities& oddities);
+Sweep read_nist_scan(Words& words, const LineReader& lines, const NistUnits& units, const NistHeader& sensor,
+                     NistOddities& oddities);
 
 }  // namespace shapemap

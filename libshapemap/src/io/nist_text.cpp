@@ -61,7 +61,7 @@ class NistReader {
   }
 
   void read_units(Words& words) {
-    if (!sensors_.empty() || !log_.positions.empty()) {
+    if (!sensors_.empty() || !log_.scans.empty()) {
       throw lines_.error("units must come before the first sensor and position");
     }
     const std::string_view length = words.next();
@@ -101,10 +101,10 @@ class NistReader {
   }
 
   void read_position(Words& words) {
-    Position position;
+    Scan position;
     position.timestamp_s = number(words, "the timestamp");
     lines_.refuse(implausible_time(position.timestamp_s));
-    lines_.refuse(implausible_count(log_.positions.size(), "positions"));
+    lines_.refuse(implausible_count(log_.scans.size(), "positions"));
     const std::string_view field = words.next();
     if (field == "reference") {
       Pose2 pose;
@@ -117,17 +117,17 @@ class NistReader {
       throw lines_.error("unexpected '" + std::string(field) + "', expected 'reference' or nothing");
     }
     expect_end(words, lines_);
-    log_.positions.push_back(std::move(position));
+    log_.scans.push_back(std::move(position));
   }
 
   void read_scan(Words& words) {
     const std::string name(words.next());
     const auto sensor = sensors_.find(name);
     if (sensor == sensors_.end()) throw lines_.error("sensor '" + name + "' is not declared above");
-    if (log_.positions.empty()) throw lines_.error("a scan before the first position");
-    SubScan scan = read_nist_scan(words, lines_, units_, sensor->second, oddities_);
+    if (log_.scans.empty()) throw lines_.error("a scan before the first position");
+    Sweep scan = read_nist_scan(words, lines_, units_, sensor->second, oddities_);
     lines_.require_plausible(scan);
-    if (choice_.takes(name, false)) log_.positions.back().sub_scans.push_back(std::move(scan));
+    if (choice_.takes(name, false)) log_.scans.back().sweeps.push_back(std::move(scan));
   }
 
   void warn_of_oddities() {
@@ -141,11 +141,11 @@ class NistReader {
 
   /// A position that was announced but has no scan, be it that its laser was not asked for or that the file ends.
   void drop_empty_positions() {
-    std::vector<Position> kept;
-    for (Position& position : log_.positions) {
-      if (!position.sub_scans.empty()) kept.push_back(std::move(position));
+    std::vector<Scan> kept;
+    for (Scan& position : log_.scans) {
+      if (!position.sweeps.empty()) kept.push_back(std::move(position));
     }
-    log_.positions = std::move(kept);
+    log_.scans = std::move(kept);
   }
 
   ByteSource& source_;

@@ -29,7 +29,7 @@ void append(std::string& text, const char* field, double value) {
 /// One `sensor` statement: what most of its scans have in common. A scan says itself what is different.
 struct Sensor {
   std::string name;
-  SubScan usual;  ///< the first scan, without readings
+  Sweep usual;  ///< the first scan, without readings
   std::size_t num_beams = 0;
   bool has_any_number = false;
 };
@@ -38,7 +38,7 @@ struct Sensor {
 double angle_unit_rad(int version) { return version == 1 ? kDegree : 1.0; }
 
 /// The fields of a sensor that a scan does not share with `usual`; of the sensor itself, all that say something.
-std::string header_text(const SubScan& scan, const SubScan& usual, double unit_rad) {
+std::string header_text(const Sweep& scan, const Sweep& usual, double unit_rad) {
   std::string text;
   if (scan.is_evenly_spaced() && scan.first_angle_rad != usual.first_angle_rad) {
     append(text, "first_angle", scan.first_angle_rad / unit_rad);
@@ -56,8 +56,8 @@ std::string header_text(const SubScan& scan, const SubScan& usual, double unit_r
 class Sensors {
  public:
   explicit Sensors(const Log& log) {
-    for (const Position& position : log.positions) {
-      for (const SubScan& scan : position.sub_scans) {
+    for (const Scan& position : log.scans) {
+      for (const Sweep& scan : position.sweeps) {
         const auto [known, is_new] = index_.emplace(key_of(scan), sensors_.size());
         if (is_new) {
           declare(scan);
@@ -68,7 +68,7 @@ class Sensors {
     }
   }
 
-  const Sensor& of(const SubScan& scan) const { return sensors_[index_.at(key_of(scan))]; }
+  const Sensor& of(const Sweep& scan) const { return sensors_[index_.at(key_of(scan))]; }
 
   bool have_any_number() const {
     return std::any_of(sensors_.begin(), sensors_.end(), [](const Sensor& sensor) { return sensor.has_any_number; });
@@ -81,7 +81,7 @@ class Sensors {
       text += "sensor " + sensor.name + " beams " + (any ? "any" : std::to_string(sensor.num_beams));
       append(text, "first_angle", sensor.usual.first_angle_rad / unit_rad);
       append(text, "angle_step", sensor.usual.angle_step_rad / unit_rad);
-      SubScan silent = sensor.usual;
+      Sweep silent = sensor.usual;
       silent.max_range_m = silent.min_range_m = silent.beam_time_step_s = 0.0;
       text += header_text(sensor.usual, silent, unit_rad);
       append_mount(text, sensor.usual.robot_from_sensor, unit_rad);
@@ -93,7 +93,7 @@ class Sensors {
  private:
   /// What the scans of one sensor share: label and mount.
   using Key = std::tuple<std::string, double, double, double, double, double, double>;
-  static Key key_of(const SubScan& scan) {
+  static Key key_of(const Sweep& scan) {
     const MountPose& mount = scan.robot_from_sensor;
     return {scan.sensor_label, mount.x_m, mount.y_m, mount.z_m, mount.yaw_rad, mount.pitch_rad, mount.roll_rad};
   }
@@ -105,7 +105,7 @@ class Sensors {
     for (const double angle_rad : {mount.yaw_rad, mount.pitch_rad, mount.roll_rad}) append(text, angle_rad / unit_rad);
   }
 
-  void declare(const SubScan& scan) {
+  void declare(const Sweep& scan) {
     Sensor sensor;
     sensor.name = free_name(scan.sensor_label);
     sensor.num_beams = scan.ranges_m.size();
@@ -134,15 +134,15 @@ class Sensors {
 };
 
 /// Whether `scan` has something that version 1 of the format cannot say.
-bool needs_version_2(const SubScan& scan, const Sensor& sensor) {
+bool needs_version_2(const Sweep& scan, const Sensor& sensor) {
   return !scan.is_evenly_spaced() || scan.start_s != 0.0 || scan.beam_time_step_s > 0.0 || !scan.beam_times_s.empty() ||
          !scan.intensities.empty() || !header_text(scan, sensor.usual, 1.0).empty();
 }
 
 int version_for(const Log& log, const Sensors& sensors) {
   if (sensors.have_any_number()) return 2;
-  for (const Position& position : log.positions) {
-    for (const SubScan& scan : position.sub_scans) {
+  for (const Scan& position : log.scans) {
+    for (const Sweep& scan : position.sweeps) {
       if (needs_version_2(scan, sensors.of(scan))) return 2;
     }
   }
@@ -160,7 +160,7 @@ void append_list(std::string& text, const char* name, const std::vector<Number>&
   }
 }
 
-void append_scan(std::string& text, const SubScan& scan, const Sensor& sensor, double unit_rad) {
+void append_scan(std::string& text, const Sweep& scan, const Sensor& sensor, double unit_rad) {
   text += "scan " + sensor.name;
   append(text, "heading", scan.nominal_heading_rad / unit_rad);
   if (scan.start_s != 0.0) append(text, "time", scan.start_s);
@@ -188,7 +188,7 @@ void write_nist(const Log& log, ByteSink& sink) {
   const double unit_rad = angle_unit_rad(version);
   sink.write(std::string(kNistName) + " " + std::to_string(version) + "\nunits m " + (version == 1 ? "deg" : "rad") +
              "\n" + sensors.text(unit_rad));
-  for (const Position& position : log.positions) {
+  for (const Scan& position : log.scans) {
     std::string text = "position";
     append(text, position.timestamp_s);
     if (position.reference_pose) {
@@ -197,7 +197,7 @@ void write_nist(const Log& log, ByteSink& sink) {
       append(text, position.reference_pose->theta_rad / unit_rad);
     }
     text += '\n';
-    for (const SubScan& scan : position.sub_scans) append_scan(text, scan, sensors.of(scan), unit_rad);
+    for (const Sweep& scan : position.sweeps) append_scan(text, scan, sensors.of(scan), unit_rad);
     sink.write(text);
   }
 }

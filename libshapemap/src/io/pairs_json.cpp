@@ -11,7 +11,7 @@ Json ranked_json(const std::optional<RankedPose>& ranked) { return ranked ? rank
 }  // namespace
 
 std::string json_line(const AlignedPair& pair, bool with_seconds) {
-  const Alignment& alignment = pair.alignment;
+  const ScanMatch& alignment = pair.alignment;
   Json all = {{"reference", pair.pair.reference},
               {"query", pair.pair.query},
               {"status", enum_name(alignment.status)},

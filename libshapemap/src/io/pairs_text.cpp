@@ -6,11 +6,11 @@
 namespace shapemap {
 namespace {
 
-std::size_t index_from(std::string_view word, const char* name, std::size_t num_positions, const LineReader& lines) {
+std::size_t index_from(std::string_view word, const char* name, std::size_t num_scans, const LineReader& lines) {
   const std::optional<long long> index = parse_count(word);
-  if (!index || *index < 0 || static_cast<std::size_t>(*index) >= num_positions) {
+  if (!index || *index < 0 || static_cast<std::size_t>(*index) >= num_scans) {
     const std::string expected =
-        num_positions == 0 ? "but the log has no positions" : "expected 0 to " + std::to_string(num_positions - 1);
+        num_scans == 0 ? "but the log has no positions" : "expected 0 to " + std::to_string(num_scans - 1);
     throw lines.error(std::string(name) + " is '" + std::string(word) + "', " + expected);
   }
   return static_cast<std::size_t>(*index);
@@ -18,10 +18,10 @@ std::size_t index_from(std::string_view word, const char* name, std::size_t num_
 
 }  // namespace
 
-std::vector<PositionPair> read_pairs(const std::string& path, std::size_t num_references, std::size_t num_queries) {
+std::vector<ScanPair> read_pairs(const std::string& path, std::size_t num_references, std::size_t num_queries) {
   ByteSource source(path);
   LineReader lines(source);
-  std::vector<PositionPair> pairs;
+  std::vector<ScanPair> pairs;
   while (const std::optional<std::string_view> line = lines.next()) {
     Words words(line->substr(0, line->find('#')));
     const std::size_t count = words.count_left();
@@ -29,7 +29,7 @@ std::vector<PositionPair> read_pairs(const std::string& path, std::size_t num_re
     if (count != 2 && count != 5) {
       throw lines.error("expected 'i j' or 'i j x_m y_m theta_rad', found " + std::to_string(count) + " values");
     }
-    PositionPair pair;
+    ScanPair pair;
     pair.reference = index_from(words.next(), "the reference", num_references, lines);
     pair.query = index_from(words.next(), "the query", num_queries, lines);
     if (count == 5) {

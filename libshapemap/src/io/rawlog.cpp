@@ -33,11 +33,11 @@ class RawlogReader {
     } catch (const RawlogDamage& found) {
       damage = describe(found);
     }
-    if (log_.positions.empty() && num_unusable_ == 0 && !damage.empty()) {
+    if (log_.scans.empty() && num_unusable_ == 0 && !damage.empty()) {
       throw InputError(source_.path() + ": " + damage + ", no whole scan before that");
     }
     choice_.report(source_.path(), log_);
-    if (log_.positions.empty() && num_unusable_ > 0) throw InputError(source_.path() + ": " + unusable_text());
+    if (log_.scans.empty() && num_unusable_ > 0) throw InputError(source_.path() + ": " + unusable_text());
     if (damage.empty()) finish_log(source_, log_);
     if (!damage.empty()) log_.warnings.push_back(source_.path() + ": " + damage + "; what is before that is used");
     warn_of_oddities();
@@ -56,7 +56,7 @@ class RawlogReader {
     if (header.name == kFrameClass) {
       read_frame();
     } else if (header.name == kScanClass) {
-      Position position;
+      Scan position;
       // Observations stand alone here: with several lasers, each would make its own positions.
       read_scan(position, true);
       add(std::move(position));
@@ -67,7 +67,7 @@ class RawlogReader {
 
   void read_frame() {
     const std::uint32_t num_observations = skeleton_.enter_frame();
-    Position position;
+    Scan position;
     bool frame_open = true;
     for (std::uint32_t i = 0; i < num_observations; ++i) {
       const ObjectHeader header = skeleton_.peek_header();
@@ -84,7 +84,7 @@ class RawlogReader {
     add(std::move(position));
   }
 
-  void read_scan(Position& position, bool only_first) {
+  void read_scan(Scan& position, bool only_first) {
     const std::string_view object = skeleton_.peek_scan();
     RawlogScan read;
     try {
@@ -101,8 +101,8 @@ class RawlogReader {
       if (num_unusable_++ == 0) first_unusable_ = fault + " (the first at offset " + std::to_string(offset) + ")";
       return;
     }
-    if (position.sub_scans.empty()) position.timestamp_s = timestamp_of(read);
-    position.sub_scans.push_back(std::move(read.scan));
+    if (position.sweeps.empty()) position.timestamp_s = timestamp_of(read);
+    position.sweeps.push_back(std::move(read.scan));
   }
 
   static std::string fault_of(const RawlogScan& read) {
@@ -114,14 +114,14 @@ class RawlogReader {
   double timestamp_of(const RawlogScan& read) {
     if (read.timestamp_s) return *read.timestamp_s;
     ++num_without_time_;
-    return static_cast<double>(log_.positions.size());
+    return static_cast<double>(log_.scans.size());
   }
 
-  void add(Position position) {
-    if (position.sub_scans.empty()) return;
-    const std::string fault = implausible_count(log_.positions.size(), "positions");
+  void add(Scan position) {
+    if (position.sweeps.empty()) return;
+    const std::string fault = implausible_count(log_.scans.size(), "positions");
     if (!fault.empty()) throw RawlogDamage{skeleton_.offset(), fault};
-    log_.positions.push_back(std::move(position));
+    log_.scans.push_back(std::move(position));
   }
 
   std::string unusable_text() const {
@@ -148,7 +148,7 @@ class RawlogReader {
 };
 
 /// MRPT counts time in 64 bits of 100 ns since the year 1601.
-void require_rawlog_time(const Position& position, std::size_t index) {
+void require_rawlog_time(const Scan& position, std::size_t index) {
   constexpr double kEarliest_s = -11644473600.0;
   constexpr double kLatest_s = 9.1e11;
   if (position.timestamp_s > kEarliest_s && position.timestamp_s < kLatest_s) return;  // written so that NaN fails
@@ -163,10 +163,10 @@ Log read_rawlog(ByteSource& source, const LogReadOptions& options) { return Rawl
 
 /// An action, with odometry if there are poses, and a frame per position: MRPT's readers take nothing but such pairs.
 void write_rawlog(const Log& log, const LogPoses* poses, ByteSink& sink) {
-  for (std::size_t i = 0; i < log.positions.size(); ++i) require_rawlog_time(log.positions[i], i);
+  for (std::size_t i = 0; i < log.scans.size(); ++i) require_rawlog_time(log.scans[i], i);
   Pose2 map_from_previous;
-  for (std::size_t i = 0; i < log.positions.size(); ++i) {
-    const Position& position = log.positions[i];
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    const Scan& position = log.scans[i];
     std::optional<Pose2> previous_from_current;
     if (poses != nullptr) {
       previous_from_current = inverse(map_from_previous) * poses->map_from_robot[i];

@@ -41,8 +41,8 @@ MountPose mount_from_mrpt(const mrpt::poses::CPose3D& pose) {
 mrpt::Clock::time_point mrpt_time(double timestamp_s) { return mrpt::Clock::fromDouble(timestamp_s); }
 
 /// MRPT's beams lie symmetrically around the sensor's x axis: the middle of ours is turned there.
-CObservation2DRangeScan::Ptr scan_to_mrpt(const SubScan& even_or_not, double timestamp_s) {
-  const SubScan scan = on_even_beams(even_or_not);
+CObservation2DRangeScan::Ptr scan_to_mrpt(const Sweep& even_or_not, double timestamp_s) {
+  const Sweep scan = on_even_beams(even_or_not);
   const std::size_t num_beams = scan.ranges_m.size();
   const double span_rad = scan.angle_step_rad * (static_cast<double>(num_beams) - 1.0);
   const double middle_rad = scan.first_angle_rad + span_rad / 2;
@@ -79,7 +79,7 @@ RawlogScan scan_from_rawlog(std::string_view object) {
     throw std::runtime_error(error.what());
   }
   RawlogScan out;
-  SubScan& scan = out.scan;
+  Sweep& scan = out.scan;
   const std::size_t num_beams = in.getScanSize();
   const double direction = in.rightToLeft ? 1.0 : -1.0;
   const double aperture_rad = in.aperture;
@@ -96,9 +96,9 @@ RawlogScan scan_from_rawlog(std::string_view object) {
   return out;
 }
 
-std::string frame_to_rawlog(const Position& position) {
+std::string frame_to_rawlog(const Scan& position) {
   mrpt::obs::CSensoryFrame frame;
-  for (const SubScan& scan : position.sub_scans) frame.insert(scan_to_mrpt(scan, position.timestamp_s));
+  for (const Sweep& scan : position.sweeps) frame.insert(scan_to_mrpt(scan, position.timestamp_s));
   return serialised(frame);
 }
 

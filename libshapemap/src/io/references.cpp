@@ -6,9 +6,9 @@ namespace shapemap {
 std::vector<std::size_t> references_of(const MapResult& result) {
   std::vector<std::size_t> references;
   std::size_t keyframe = kNoReference;
-  for (const PositionResult& position : result.positions) {
+  for (const ScanResult& position : result.scans) {
     references.push_back(position.reference == kNoReference ? keyframe : position.reference);
-    if (position.fragment >= 0 && position.is_keyframe) keyframe = position.position_index;
+    if (position.component >= 0 && position.is_keyframe) keyframe = position.scan_index;
   }
   return references;
 }

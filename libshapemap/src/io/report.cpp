@@ -26,15 +26,15 @@ Json poses_json(const std::vector<Pose2>& poses) {
   return list;
 }
 
-std::size_t num_inside(const std::vector<PlacedPosition>& placed, const LogPart& part) {
-  return static_cast<std::size_t>(std::count_if(placed.begin(), placed.end(), [&](const PlacedPosition& place) {
-    return part.first <= place.position_index && place.position_index < part.last;
+std::size_t num_inside(const std::vector<PlacedScan>& placed, const LogPart& part) {
+  return static_cast<std::size_t>(std::count_if(placed.begin(), placed.end(), [&](const PlacedScan& place) {
+    return part.first <= place.scan_index && place.scan_index < part.last;
   }));
 }
 
-std::size_t num_contradicting(const std::vector<PlacedPosition>& placed) {
+std::size_t num_contradicting(const std::vector<PlacedScan>& placed) {
   return static_cast<std::size_t>(std::count_if(
-      placed.begin(), placed.end(), [](const PlacedPosition& place) { return place.agreement.contradicts_map; }));
+      placed.begin(), placed.end(), [](const PlacedScan& place) { return place.consistency.contradicts_map; }));
 }
 
 Json options_json(const RunReport& report) {
@@ -61,7 +61,7 @@ Json log_json(const RunReport& report, std::size_t which, const LogPart& part) {
   Json sensors = Json::array();
   for (const LogSummary::Sensor& sensor : summary.sensors) {
     sensors.push_back({{"label", sensor.label},
-                       {"num_sub_scans", sensor.num_sub_scans},
+                       {"num_sub_scans", sensor.num_sweeps},
                        {"num_beams", sensor.most_beams},
                        {"fewest_beams", sensor.fewest_beams},
                        {"num_without_readings", sensor.num_without_readings},
@@ -86,7 +86,7 @@ Json log_json(const RunReport& report, std::size_t which, const LogPart& part) {
   return {{"path", file.path},
           {"format", file.format},
           {"first_index", part.first},
-          {"num_positions", summary.num_positions},
+          {"num_positions", summary.num_scans},
           {"num_placed", num_inside(report.result.placed(), part)},
           {"duration_s", summary.duration_s},
           {"sensors", sensors},
@@ -111,9 +111,9 @@ Json ranked_json(const std::vector<RankedPose>& ranked) {
   return list;
 }
 
-Json alignment_json(const PositionResult& position, std::size_t reference) {
+Json alignment_json(const ScanResult& position, std::size_t reference) {
   if (!was_aligned(position)) return nullptr;
-  const Alignment& alignment = position.alignment;
+  const ScanMatch& alignment = position.alignment;
   const auto if_any = [&](const Pose2& pose) { return alignment.has_pose() ? pose_json(pose) : Json(nullptr); };
   return {{"status", enum_name(alignment.status)},
           {"reference", reference == kNoReference ? Json(nullptr) : Json(reference)},
@@ -129,20 +129,20 @@ Json alignment_json(const PositionResult& position, std::size_t reference) {
           {"overlap", alignment.overlap},
           {"overlap_ratio", alignment.overlap_ratio},
           {"icp_iterations", alignment.icp_iterations},
-          {"query_from_sub_scan", poses_json(alignment.query_from_sub_scan)}};
+          {"query_from_sub_scan", poses_json(alignment.query_from_sweep)}};
 }
 
-Json position_json(const PositionResult& position, std::size_t reference, const RunReport& report) {
-  const std::size_t log = part_with(report.log, position.position_index);
+Json position_json(const ScanResult& position, std::size_t reference, const RunReport& report) {
+  const std::size_t log = part_with(report.log, position.scan_index);
   const std::size_t first = log == 0 ? 0 : report.log.starts[log - 1];
-  return {{"index", position.position_index},
+  return {{"index", position.scan_index},
           {"log", log},
-          {"index_in_whole_log", index_in_whole_log(position.position_index - first, report.selection)},
+          {"index_in_whole_log", index_in_whole_log(position.scan_index - first, report.selection)},
           {"timestamp_s", position.timestamp_s},
-          {"fragment", position.fragment},
-          {"starts_fragment", position.starts_fragment},
-          {"is_keyframe", position.fragment >= 0 && position.is_keyframe},
-          {"held_by_loops", position.held_by_loops},
+          {"fragment", position.component},
+          {"starts_fragment", position.starts_component},
+          {"is_keyframe", position.component >= 0 && position.is_keyframe},
+          {"held_by_loops", position.loop_constrained},
           {"reason", position.reason},
           {"alignment", alignment_json(position, reference)},
           {"why_not_in_map", report.result.why_not_in_map(position)},
@@ -150,69 +150,69 @@ Json position_json(const PositionResult& position, std::size_t reference, const 
           {"agreement", nullptr}};
 }
 
-Json agreement_json(const ScanAgreement& agreement) {
-  return {{"agree", agreement.agree},
-          {"through", agreement.through},
-          {"in_free", agreement.in_free},
-          {"contradicts_map", agreement.contradicts_map}};
+Json agreement_json(const ScanConsistency& consistency) {
+  return {{"agree", consistency.agree},
+          {"through", consistency.through},
+          {"in_free", consistency.in_free},
+          {"contradicts_map", consistency.contradicts_map}};
 }
 
 Json positions_json(const RunReport& report) {
   Json list = Json::array();
   const std::vector<std::size_t> references = references_of(report.result);
-  std::vector<std::size_t> entry_of(report.log.positions.size(), 0);
-  for (const PositionResult& position : report.result.positions) {
-    entry_of.at(position.position_index) = list.size();
+  std::vector<std::size_t> entry_of(report.log.scans.size(), 0);
+  for (const ScanResult& position : report.result.scans) {
+    entry_of.at(position.scan_index) = list.size();
     list.push_back(position_json(position, references[list.size()], report));
   }
-  for (const Fragment& fragment : report.result.fragments) {
-    for (const PlacedPosition& place : fragment.positions) {
-      list.at(entry_of.at(place.position_index))["agreement"] = agreement_json(place.agreement);
+  for (const Component& component : report.result.components) {
+    for (const PlacedScan& place : component.scans) {
+      list.at(entry_of.at(place.scan_index))["agreement"] = agreement_json(place.consistency);
     }
   }
-  for (const PlacedPosition& place : report.result.placed()) {
-    list.at(entry_of.at(place.position_index))["map_from_robot"] = pose_json(place.map_from_robot);
+  for (const PlacedScan& place : report.result.placed()) {
+    list.at(entry_of.at(place.scan_index))["map_from_robot"] = pose_json(place.map_from_robot);
   }
   return list;
 }
 
 /// How many of the positions each log has.
-Json per_log_json(const Log& log, const std::vector<PlacedPosition>& positions) {
+Json per_log_json(const Log& log, const std::vector<PlacedScan>& scans) {
   Json list = Json::array();
   const std::vector<LogPart> parts = parts_of(log);
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const std::size_t count = num_inside(positions, parts[i]);
+    const std::size_t count = num_inside(scans, parts[i]);
     if (count > 0) list.push_back({{"log", i}, {"num_positions", count}});
   }
   return list;
 }
 
-Json drawn_json(const RunReport& report, std::size_t fragment) {
-  for (const DrawnFragment& drawn : report.drawn) {
-    if (drawn.fragment != static_cast<int>(fragment)) continue;
+Json drawn_json(const RunReport& report, std::size_t component) {
+  for (const DrawnComponent& drawn : report.drawn) {
+    if (drawn.component != static_cast<int>(component)) continue;
     return {{"num_returns", drawn.num_returns}, {"num_outside", drawn.num_outside}};
   }
   return nullptr;
 }
 
-Json walls_json(const RunReport& report, std::size_t fragment) {
-  if (fragment >= report.wall_directions.size()) return nullptr;
-  const WallDirection& walls = report.wall_directions[fragment];
+Json walls_json(const RunReport& report, std::size_t component) {
+  if (component >= report.wall_directions.size()) return nullptr;
+  const WallDirection& walls = report.wall_directions[component];
   return {{"turned_deg", walls.turn_rad() / kDegree}, {"share", walls.share}, {"rival_share", walls.rival_share}};
 }
 
 Json fragments_json(const RunReport& report) {
   const MapResult& result = report.result;
   Json list = Json::array();
-  for (std::size_t i = 0; i < result.fragments.size(); ++i) {
-    const std::vector<PlacedPosition>& positions = result.fragments[i].positions;
-    if (positions.empty()) continue;
+  for (std::size_t i = 0; i < result.components.size(); ++i) {
+    const std::vector<PlacedScan>& scans = result.components[i].scans;
+    if (scans.empty()) continue;
     list.push_back({{"fragment", i},
-                    {"num_positions", positions.size()},
-                    {"first_index", positions.front().position_index},
-                    {"last_index", positions.back().position_index},
-                    {"logs", per_log_json(report.log, positions)},
-                    {"is_map", static_cast<int>(i) == result.largest_fragment},
+                    {"num_positions", scans.size()},
+                    {"first_index", scans.front().scan_index},
+                    {"last_index", scans.back().scan_index},
+                    {"logs", per_log_json(report.log, scans)},
+                    {"is_map", static_cast<int>(i) == result.largest_component},
                     {"picture", drawn_json(report, i)},
                     {"walls", walls_json(report, i)}});
   }
@@ -235,7 +235,7 @@ Json timings_json(const RunReport& report) {
   const RunCosts& costs = report.costs;
   return {{"shape", times.shape_s}, {"align", times.align_s},
           {"icp", times.icp_s},     {"decoupled_icp", times.decoupled_icp_s},
-          {"loops", times.loops_s}, {"agreement", times.agreement_s},
+          {"loops", times.loops_s}, {"agreement", times.consistency_s},
           {"read", costs.read_s},   {"map", costs.map_s},
           {"write", costs.write_s}, {"wall", costs.wall_s},
           {"cpu", costs.cpu_s}};
@@ -244,7 +244,7 @@ Json timings_json(const RunReport& report) {
 Json milestones_json(const RunCosts& costs) {
   Json list = Json::array();
   for (const Milestone& milestone : costs.milestones) {
-    list.push_back({{"num_positions", milestone.num_positions},
+    list.push_back({{"num_positions", milestone.num_scans},
                     {"wall_s", milestone.wall_s},
                     {"cpu_s", milestone.cpu_s},
                     {"peak_memory_mib", milestone.peak_memory_mib}});
@@ -262,7 +262,7 @@ std::string json_report(const RunReport& report) {
                     {"versions", versions},
                     {"logs", logs_json(report)},
                     {"options", options_json(report)},
-                    {"num_positions", report.result.positions.size()},
+                    {"num_positions", report.result.scans.size()},
                     {"num_placed", report.result.placed().size()},
                     {"num_contradicting", num_contradicting(report.result.placed())},
                     {"interrupted", report.result.interrupted},

@@ -55,7 +55,7 @@ std::optional<std::string_view> LineReader::next() {
   return line;
 }
 
-void LineReader::require_plausible(const SubScan& scan) {
+void LineReader::require_plausible(const Sweep& scan) {
   refuse(implausibility(scan));
   refuse(implausible_count(num_scans_++, "scans"));
 }

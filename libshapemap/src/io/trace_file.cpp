@@ -27,8 +27,8 @@ TraceFile::TraceFile(const std::string& path, TracedRun run)
 
 TraceFile::~TraceFile() = default;
 
-void TraceFile::on_shape(std::size_t position_index, const std::vector<ShapePoint>& points) {
-  write_line(position_json(run_, position_index, points), *sink_);
+void TraceFile::on_shape(std::size_t scan_index, const std::vector<ShapePoint>& points) {
+  write_line(position_json(run_, scan_index, points), *sink_);
 }
 
 void TraceFile::on_alignment(const TracedAlignment& alignment) {
@@ -43,12 +43,12 @@ void TraceFile::on_revision(const TracedRevision& revision) { write_line(revisio
 
 void TraceFile::commit(const MapResult& result) {
   // Where each position stands in its fragment: both are in the order of the log.
-  std::vector<std::size_t> next_of_fragment(result.fragments.size(), 0);
-  for (const PositionResult& position : result.positions) {
-    const PlacedPosition* placed = nullptr;
-    if (position.fragment >= 0) {
-      const auto fragment = static_cast<std::size_t>(position.fragment);
-      placed = &result.fragments.at(fragment).positions.at(next_of_fragment[fragment]++);
+  std::vector<std::size_t> next_of_fragment(result.components.size(), 0);
+  for (const ScanResult& position : result.scans) {
+    const PlacedScan* placed = nullptr;
+    if (position.component >= 0) {
+      const auto component = static_cast<std::size_t>(position.component);
+      placed = &result.components.at(component).scans.at(next_of_fragment[component]++);
     }
     write_line(result_json(position, placed), *sink_);
   }

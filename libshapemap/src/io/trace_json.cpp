@@ -9,8 +9,8 @@ namespace {
 
 Json point_array(const Point2& p) { return Json::array({p.x(), p.y()}); }
 
-Json polylines_json(const SubScan& sub_scan, int index, const MappingOptions& options) {
-  const SubScanShape shape = sub_scan_shape(sub_scan, index, options.returns, options.polylines, options.shape);
+Json polylines_json(const Sweep& sweep, int index, const MappingOptions& options) {
+  const SweepShape shape = sweep_shape(sweep, index, options.returns, options.polylines, options.shape);
   Json scan_points = Json::array();
   for (const ScanPoint& point : shape.scan_points) scan_points.push_back(point_array(point.p_m));
   Json segments = Json::array();
@@ -53,7 +53,7 @@ class PairNames {
       while (target_ == LcsTarget::kConcatenated && point >= targets_[scan].num_points) {
         point -= targets_[scan++].num_points;
       }
-      all.push_back(Json::array({pair.indices.query, targets_.at(scan).position_index, point}));
+      all.push_back(Json::array({pair.indices.query, targets_.at(scan).scan_index, point}));
     }
     return all;
   }
@@ -80,9 +80,9 @@ Json rotation_json(const RotationMatch& match) {
 Json targets_json(const std::vector<TracedTarget>& targets) {
   Json all = Json::array();
   for (const TracedTarget& target : targets) {
-    all.push_back({{"position", target.position_index},
+    all.push_back({{"position", target.scan_index},
                    {"ref_from_robot", pose_array(target.ref_from_robot)},
-                   {"robot_from_sub_scan", pose_arrays(target.robot_from_sub_scan)}});
+                   {"robot_from_sub_scan", pose_arrays(target.robot_from_sweep)}});
   }
   return all;
 }
@@ -101,11 +101,11 @@ void add_best_rotation(const TracedAlignment& alignment, LcsTarget target, Json&
   all["kept"] = names(best.translation.kept);
 }
 
-Json hypotheses_json(const std::vector<PoseHypothesis>& hypotheses) {
+Json hypotheses_json(const std::vector<MatchCandidate>& candidates) {
   Json all = Json::array();
-  for (const PoseHypothesis& hypothesis : hypotheses) {
-    all.push_back(ranked_json(ranked_pose(hypothesis)));
-    all.back()["covariance"] = covariance_json(pose_covariance(hypothesis.fit));
+  for (const MatchCandidate& candidate : candidates) {
+    all.push_back(ranked_json(ranked_pose(candidate)));
+    all.back()["covariance"] = covariance_json(pose_covariance(candidate.fit));
   }
   return all;
 }
@@ -129,29 +129,29 @@ Json run_json(const TracedRun& run) {
           {"log", run.log_paths.at(0)},
           {"logs", logs},
           {"log_format", run.log.format},
-          {"num_positions", run.log.positions.size()},
+          {"num_positions", run.log.scans.size()},
           {"histogram_scale", kHistogramScale},
           {"options", options}};
 }
 
-Json position_json(const TracedRun& run, std::size_t position_index, const std::vector<ShapePoint>& points) {
-  const Position& position = run.log.positions.at(position_index);
-  const std::size_t log = part_with(run.log, position_index);
+Json position_json(const TracedRun& run, std::size_t scan_index, const std::vector<ShapePoint>& points) {
+  const Scan& position = run.log.scans.at(scan_index);
+  const std::size_t log = part_with(run.log, scan_index);
   const std::size_t first = log == 0 ? 0 : run.log.starts[log - 1];
-  Json sub_scans = Json::array();
-  for (std::size_t s = 0; s < position.sub_scans.size(); ++s) {
-    sub_scans.push_back(polylines_json(position.sub_scans[s], static_cast<int>(s), run.mapping));
+  Json sweeps = Json::array();
+  for (std::size_t s = 0; s < position.sweeps.size(); ++s) {
+    sweeps.push_back(polylines_json(position.sweeps[s], static_cast<int>(s), run.mapping));
   }
   Json shape = Json::array();
   for (const ShapePoint& p : points) {
-    shape.push_back(Json::array({p.p_m.x(), p.p_m.y(), p.tangent_rad, p.sub_scan}));
+    shape.push_back(Json::array({p.p_m.x(), p.p_m.y(), p.tangent_rad, p.sweep}));
   }
   Json all = {{"record", "position"},
-              {"index", position_index},
+              {"index", scan_index},
               {"log", log},
-              {"index_in_whole_log", index_in_whole_log(position_index - first, run.selection)},
+              {"index_in_whole_log", index_in_whole_log(scan_index - first, run.selection)},
               {"timestamp_s", number_json(position.timestamp_s)},
-              {"sub_scans", sub_scans},
+              {"sub_scans", sweeps},
               {"points", shape}};
   if (run.mapping.run.method == Method::kPaper) {
     all["histograms"] = histograms_json(points, run.mapping.align.histogram);
@@ -160,10 +160,10 @@ Json position_json(const TracedRun& run, std::size_t position_index, const std::
 }
 
 Json alignment_json(const TracedAlignment& alignment, LcsTarget target) {
-  const Alignment& result = alignment.alignment;
+  const ScanMatch& result = alignment.alignment;
   Json rotations = Json::array();
   for (const RotationMatch& match : alignment.steps.rotations) rotations.push_back(rotation_json(match));
-  Json all = {{"record", "alignment"},          {"reference", alignment.targets.back().position_index},
+  Json all = {{"record", "alignment"},          {"reference", alignment.targets.back().scan_index},
               {"query", alignment.query_index}, {"status", enum_name(result.status)},
               {"reason", result.reason},        {"targets", targets_json(alignment.targets)},
               {"rotations", rotations}};
@@ -171,7 +171,7 @@ Json alignment_json(const TracedAlignment& alignment, LcsTarget target) {
   all["shape_ref_from_query"] = pose_array(result.shape_ref_from_query);
   all["icp_steps"] = pose_arrays(alignment.steps.icp.steps);
   all["icp_ref_from_query"] = pose_array(result.icp_ref_from_query);
-  all["query_from_sub_scan"] = pose_arrays(result.query_from_sub_scan);
+  all["query_from_sub_scan"] = pose_arrays(result.query_from_sweep);
   all["overlap"] = result.overlap;
   all["overlap_ratio"] = result.overlap_ratio;
   return all;
@@ -182,55 +182,55 @@ Json link_json(const TracedLink& link) {
           {"reference", link.reference_index},
           {"query", link.query_index},
           {"num_own", link.num_own},
-          {"view_shortfall", link.view_shortfall},
-          {"hypotheses", hypotheses_json(link.hypotheses)}};
+          {"view_shortfall", link.insufficient_view},
+          {"hypotheses", hypotheses_json(link.candidates)}};
 }
 
 Json choice_json(const TracedChoice& choice) {
   return {{"record", "choice"},
           {"reference", choice.reference_index},
           {"query", choice.query_index},
-          {"alternative", choice.alternative},
+          {"alternative", choice.candidate},
           {"margin", choice.margin}};
 }
 
 Json revision_json(const TracedRevision& revision) {
-  Json hypotheses = hypotheses_json(revision.hypotheses);
-  for (std::size_t k = 0; k < revision.said_by_others.size(); ++k) {
-    hypotheses[k]["for_it"] = revision.said_by_others[k].for_it;
-    hypotheses[k]["against_it"] = revision.said_by_others[k].against_it;
-    hypotheses[k]["vouched"] = revision.vouched[k];
+  Json candidates = hypotheses_json(revision.candidates);
+  for (std::size_t k = 0; k < revision.support_by_others.size(); ++k) {
+    candidates[k]["for_it"] = revision.support_by_others[k].for_it;
+    candidates[k]["against_it"] = revision.support_by_others[k].against_it;
+    candidates[k]["vouched"] = revision.parallel_support[k];
   }
   return {{"record", "revision"},
           {"reference", revision.reference_index},
           {"query", revision.query_index},
-          {"hypotheses", hypotheses},
+          {"hypotheses", candidates},
           {"in_map", revision.in_map},
-          {"alternative", revision.alternative},
+          {"alternative", revision.candidate},
           {"probability", revision.probability}};
 }
 
-Json result_json(const PositionResult& position, const PlacedPosition* placed) {
-  const Alignment& alignment = position.alignment;
+Json result_json(const ScanResult& position, const PlacedScan* placed) {
+  const ScanMatch& alignment = position.alignment;
   return {{"record", "result"},
-          {"index", position.position_index},
+          {"index", position.scan_index},
           {"timestamp_s", number_json(position.timestamp_s)},
-          {"fragment", position.fragment},
-          {"starts_fragment", position.starts_fragment},
+          {"fragment", position.component},
+          {"starts_fragment", position.starts_component},
           {"status", was_aligned(position) ? Json(enum_name(alignment.status)) : Json(nullptr)},
           {"reason", position.reason},
           {"ref_from_query", alignment.has_pose() ? pose_array(alignment.ref_from_query) : Json(nullptr)},
           {"probability", number_json(alignment.probability)},
           {"covariance", covariance_json(alignment.covariance)},
           {"fragment_from_robot", placed ? pose_array(placed->map_from_robot) : Json(nullptr)},
-          {"robot_from_sub_scan", placed ? pose_arrays(placed->robot_from_sub_scan) : Json::array()}};
+          {"robot_from_sub_scan", placed ? pose_arrays(placed->robot_from_sweep) : Json::array()}};
 }
 
 Json end_json(const MapResult& result) {
   return {{"record", "end"},
-          {"num_positions", result.positions.size()},
+          {"num_positions", result.scans.size()},
           {"num_placed", result.placed().size()},
-          {"largest_fragment", result.largest_fragment}};
+          {"largest_fragment", result.largest_component}};
 }
 
 }  // namespace shapemap

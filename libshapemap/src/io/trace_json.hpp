@@ -10,7 +10,7 @@ namespace shapemap {
 Json run_json(const TracedRun& run);
 
 /// `points` are those that the method looks at. Polylines and histograms are made once more, the same way.
-Json position_json(const TracedRun& run, std::size_t position_index, const std::vector<ShapePoint>& points);
+Json position_json(const TracedRun& run, std::size_t scan_index, const std::vector<ShapePoint>& points);
 
 Json alignment_json(const TracedAlignment& alignment, LcsTarget target);
 Json link_json(const TracedLink& link);
@@ -18,7 +18,7 @@ Json choice_json(const TracedChoice& choice);
 Json revision_json(const TracedRevision& revision);
 
 /// `placed` is null for a position that is in no fragment.
-Json result_json(const PositionResult& position, const PlacedPosition* placed);
+Json result_json(const ScanResult& position, const PlacedScan* placed);
 
 Json end_json(const MapResult& result);
 

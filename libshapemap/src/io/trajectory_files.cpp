@@ -50,8 +50,8 @@ bool is_covariance(const Eigen::Matrix3d& matrix) {
 
 /// Of a motion to `position` from the one before it. That is what `position` is aligned to, or else its `sibling`: both
 /// are aligned to the same keyframe, and then both alignments err.
-Eigen::Matrix3d covariance_of(const Pose2& motion, const PositionResult& position, const PositionResult* sibling) {
-  const Alignment& alignment = position.alignment;
+Eigen::Matrix3d covariance_of(const Pose2& motion, const ScanResult& position, const ScanResult* sibling) {
+  const ScanMatch& alignment = position.alignment;
   if (!alignment.covariance.allFinite()) {
     if (alignment.has_pose()) {
       throw ConfigError("motions need covariances, which only the robust method gives; use --method robust");
@@ -85,17 +85,17 @@ std::vector<TimedPose> read_tum_trajectory(const std::string& path) {
 
 std::vector<TimedMotion> motions_of(const MapResult& result) { return motions_of(result, result.placed()); }
 
-std::vector<TimedMotion> motions_of(const MapResult& result, const std::vector<PlacedPosition>& placed) {
+std::vector<TimedMotion> motions_of(const MapResult& result, const std::vector<PlacedScan>& placed) {
   const std::vector<std::size_t> references = references_of(result);
   std::vector<TimedMotion> motions;
   if (!placed.empty()) motions.push_back({placed[0].timestamp_s, {}, Eigen::Matrix3d::Zero(), ""});
   for (std::size_t i = 1; i < placed.size(); ++i) {
     const Pose2 motion = inverse(placed[i - 1].map_from_robot) * placed[i].map_from_robot;
-    const std::size_t before = placed[i - 1].position_index;
-    const std::size_t here = placed[i].position_index;
+    const std::size_t before = placed[i - 1].scan_index;
+    const std::size_t here = placed[i].scan_index;
     const bool share_keyframe = references.at(here) == references.at(before) && references[here] != kNoReference;
-    const PositionResult* sibling = share_keyframe ? &result.positions[before] : nullptr;
-    motions.push_back({placed[i].timestamp_s, motion, covariance_of(motion, result.positions[here], sibling), ""});
+    const ScanResult* sibling = share_keyframe ? &result.scans[before] : nullptr;
+    motions.push_back({placed[i].timestamp_s, motion, covariance_of(motion, result.scans[here], sibling), ""});
   }
   return motions;
 }

@@ -27,23 +27,24 @@ constexpr std::size_t kMostTried = 16;
 
 }  // namespace
 
-MapFollower::MapFollower(const KeyframeChain& chain, const RobustOptions& options, std::size_t home, std::size_t first,
-                         Bearings bearings, const std::vector<LoopHypothesis>& loops, KeyframeMap& map)
+Localizer::Localizer(const KeyframeGraph& chain, const RobustOptions& options, std::size_t active_component,
+                     std::size_t first, LocalizationState state, const std::vector<LoopCandidate>& loops,
+                     OptimizedMap& map)
     : chain_(chain),
       options_(options),
       loops_(loops),
       map_(map),
-      recognition_(chain, options, home),
+      verification_(chain, options, active_component),
       stand_ins_(chain.keyframes.size()),
-      bearings_(bearings),
-      log_odds_(bearings.log_odds),
+      state_(state),
+      log_odds_(state.log_odds),
       open_(first),
       good_(first),
       last_telling_(first),
       last_known_(first - 1) {}
 
-std::size_t MapFollower::go(std::size_t last) {
-  for (std::size_t b = open_; b < last && !bearings_.is_lost; ++b) {
+std::size_t Localizer::go(std::size_t last) {
+  for (std::size_t b = open_; b < last && !state_.is_lost; ++b) {
     const bool doubts = is_in_doubt(b);
     if (doubts && b + kLookAhead > last) break;
     if (!link_exists(b) || (doubts && !decide(b))) {
@@ -53,11 +54,11 @@ std::size_t MapFollower::go(std::size_t last) {
       get_lost();
     }
   }
-  if (bearings_.is_lost) find_way(last);
+  if (state_.is_lost) find_way(last);
   return open_;
 }
 
-void MapFollower::expect(std::size_t b) {
+void Localizer::expect(std::size_t b) {
   if (link_exists(b)) {
     map_.map_from_keyframe[b] = map_.map_from_keyframe[b - 1] * link_in_map(chain_, map_, b);
   } else {
@@ -65,27 +66,27 @@ void MapFollower::expect(std::size_t b) {
   }
 }
 
-bool MapFollower::link_exists(std::size_t b) const { return map_.link_choice[b - 1] != kCut; }
+bool Localizer::link_exists(std::size_t b) const { return map_.edge_choice[b - 1] != kCut; }
 
-bool MapFollower::is_in_doubt(std::size_t b) const {
-  return link_exists(b) && stated_probability(chain_.links[b - 1]) < kSureLink;
+bool Localizer::is_in_doubt(std::size_t b) const {
+  return link_exists(b) && stated_probability(chain_.edges[b - 1]) < kSureLink;
 }
 
 /// False when the robot cannot be where it is expected.
-bool MapFollower::step(std::size_t b) {
+bool Localizer::step(std::size_t b) {
   expect(b);
-  map_.component[b] = recognition_.home();
-  Look seen = recognition_.look(map_, b, b);
-  const bool is_new = !seen.stand_in && seen.log_odds == 0.0;
+  map_.component[b] = verification_.active_component();
+  PlaceEvidence seen = verification_.look(map_, b, b);
+  const bool is_new = !seen.replacement && seen.log_odds == 0.0;
   if (is_new && good_ == b) seen.log_odds = -std::clamp(log_odds_ - kLeastOfNew, 0.0, kErrorOfNew);
   log_odds_ = std::min(kSureOfPlace, log_odds_ + seen.log_odds);
   if (log_odds_ < 0.0) return false;
   const bool tells_nothing = seen.log_odds <= 0.0 && seen.log_odds >= -kErrorOfNew;
   last_telling_ = tells_nothing ? last_telling_ : b;
-  if (seen.stand_in) {
-    map_.map_from_keyframe[b] = pose_by(map_, *seen.stand_in);
-    recognition_.let_go(b);
-    pending_.emplace_back(b, std::move(*seen.stand_in));
+  if (seen.replacement) {
+    map_.map_from_keyframe[b] = pose_by(map_, *seen.replacement);
+    verification_.let_go(b);
+    pending_.emplace_back(b, std::move(*seen.replacement));
   }
   const bool nothing_will = b >= last_telling_ + kLookAhead;
   if (nothing_will && log_odds_ < kSureOfPlace) forget_pending();
@@ -97,93 +98,93 @@ bool MapFollower::step(std::size_t b) {
 }
 
 /// They stay in the map themselves.
-void MapFollower::forget_pending() {
-  for (const auto& [keyframe, unused] : pending_) recognition_.keep(keyframe);
+void Localizer::forget_pending() {
+  for (const auto& [keyframe, unused] : pending_) verification_.keep(keyframe);
   pending_.clear();
 }
 
-void MapFollower::make_certain(std::size_t end) {
+void Localizer::make_certain(std::size_t end) {
   if (end <= open_) return;
   auto open = pending_.begin();
   for (; open != pending_.end() && open->first < end; ++open) know(open->first, std::move(open->second));
   pending_.erase(pending_.begin(), open);
   open_ = end;
-  bearings_.log_odds = log_odds_;
+  state_.log_odds = log_odds_;
 }
 
-void MapFollower::know(std::size_t b, StandIn stand_in) {
+void Localizer::know(std::size_t b, ReplacementKeyframe replacement) {
   map_.constraints.push_back(
-      {stand_in.keyframe, b, stand_in.pose.ref_from_query, pose_covariance(stand_in.pose.fit), 0.0});
+      {replacement.keyframe, b, replacement.pose.ref_from_query, pose_covariance(replacement.pose.fit), 0.0});
   hold_back_from(b);
   last_known_ = b;
-  recognition_.let_go(b);
-  stand_ins_[b] = std::move(stand_in);
+  verification_.let_go(b);
+  stand_ins_[b] = std::move(replacement);
 }
 
 /// What is between a keyframe that is known again and the last one that was is held from both ends.
-void MapFollower::hold_back_from(std::size_t b) {
+void Localizer::hold_back_from(std::size_t b) {
   for (std::size_t i = b; i > last_known_ && link_exists(i); --i) {
-    if (map_.component[i - 1] != recognition_.home()) break;
-    map_.held_by_loops[i - 1] = true;
+    if (map_.component[i - 1] != verification_.active_component()) break;
+    map_.loop_constrained[i - 1] = true;
   }
 }
 
 /// Takes the alternative of the link to `b` after which what follows is known again, and after no other.
-bool MapFollower::decide(std::size_t b) {
-  const int chosen = map_.link_choice[b - 1];
+bool Localizer::decide(std::size_t b) {
+  const int chosen = map_.edge_choice[b - 1];
   const Pose2 before = map_.map_from_keyframe[b - 1];
   std::size_t end = b + 1;
   while (end < b + kLookAhead && link_exists(end)) ++end;
-  PlaceChoice places;
+  PlaceHypotheses places;
   int best = chosen;
-  for (int k = 0; k < static_cast<int>(chain_.links[b - 1].hypotheses.size()); ++k) {
-    map_.link_choice[b - 1] = k;
-    if (places.add(recognition_.lay(map_, b, end, b, before * link_in_map(chain_, map_, b)))) best = k;
+  for (int k = 0; k < static_cast<int>(chain_.edges[b - 1].candidates.size()); ++k) {
+    map_.edge_choice[b - 1] = k;
+    if (places.add(verification_.lay(map_, b, end, b, before * link_in_map(chain_, map_, b)))) best = k;
   }
-  map_.link_choice[b - 1] = places.is_sure() ? best : chosen;
+  map_.edge_choice[b - 1] = places.is_sure() ? best : chosen;
   return places.is_sure();
 }
 
-void MapFollower::get_lost() {
-  bearings_.is_lost = true;
+void Localizer::get_lost() {
+  state_.is_lost = true;
   forget_pending();
 }
 
 /// Of what may be anywhere, each stretch that links in doubt leave whole is tried at all places where it may be. What
 /// comes before one that is found stays apart until all of the map is solved; and so does what comes after a gap, where
 /// another log starts or nothing fits: that two logs are of one place takes more.
-void MapFollower::find_way(std::size_t last) {
+void Localizer::find_way(std::size_t last) {
   const std::size_t lost = open_;
   for (std::size_t b = lost; b < last; ++b) {
     expect(b);
     map_.component[b] = lost;
   }
-  for (std::size_t first = lost; first < last && !chain_.links[first - 1].hypotheses.empty();) {
+  for (std::size_t first = lost; first < last && !chain_.edges[first - 1].candidates.empty();) {
     const std::size_t end = end_of_stretch(first, last);
     const std::size_t end_of_placed = place(first, end);
     if (end_of_placed > first) {
       open_ = end_of_placed;
-      bearings_ = {open_ < last, kSureOfPlace};
+      state_ = {open_ < last, kSureOfPlace};
     }
     first = end_of_placed > first ? end_of_placed : end;
   }
 }
 
-std::size_t MapFollower::end_of_stretch(std::size_t first, std::size_t last) const {
+std::size_t Localizer::end_of_stretch(std::size_t first, std::size_t last) const {
   std::size_t end = first + 1;
   while (end < last && link_exists(end) && !is_in_doubt(end)) ++end;
   return end;
 }
 
 /// Returns up to where it is in its place now.
-std::size_t MapFollower::place(std::size_t first, std::size_t last) {
+std::size_t Localizer::place(std::size_t first, std::size_t last) {
   if (last - first < kShortest) return first;
-  PlaceChoice places;
+  PlaceHypotheses places;
   std::size_t tried = 0;
   for (const auto& [seed, map_from_seed] : candidates(first, last)) {
     if (places.has(seed - first, map_from_seed)) continue;
     if (++tried > kMostTried) break;
-    places.add(recognition_.lay(map_, first, last, seed, map_from_seed));
+    places.add(verification_.lay(map_, first, last, seed, map_from_seed));
   }
   for (std::size_t b = first; b < last; ++b) expect(b);
   if (!places.is_sure() || places.best().sure_end <= places.best().sure_begin) return first;
@@ -192,54 +193,55 @@ std::size_t MapFollower::place(std::size_t first, std::size_t last) {
 }
 
 /// A keyframe each, and where it may be: where the link to the first says, and where loops do.
-std::vector<std::pair<std::size_t, Pose2>> MapFollower::candidates(std::size_t first, std::size_t last) const {
+std::vector<std::pair<std::size_t, Pose2>> Localizer::candidates(std::size_t first, std::size_t last) const {
   std::vector<std::pair<std::size_t, Pose2>> found;
-  if (map_.component[first - 1] == recognition_.home()) {
-    for (const PoseHypothesis& pose : chain_.links[first - 1].hypotheses) {
+  if (map_.component[first - 1] == verification_.active_component()) {
+    for (const MatchCandidate& pose : chain_.edges[first - 1].candidates) {
       found.emplace_back(first, map_.map_from_keyframe[first - 1] * pose.ref_from_query);
     }
   }
-  std::vector<const LoopHypothesis*> here;
-  for (const LoopHypothesis& loop : loops_) {
+  std::vector<const LoopCandidate*> here;
+  for (const LoopCandidate& loop : loops_) {
     const bool is_here = first <= loop.b && loop.b < last && loop.a < first;
-    if (is_here && map_.component[loop.a] == recognition_.home() && !stand_ins_[loop.a]) here.push_back(&loop);
+    if (is_here && map_.component[loop.a] == verification_.active_component() && !stand_ins_[loop.a])
+      here.push_back(&loop);
   }
-  std::stable_sort(here.begin(), here.end(), [](const LoopHypothesis* one, const LoopHypothesis* other) {
+  std::stable_sort(here.begin(), here.end(), [](const LoopCandidate* one, const LoopCandidate* other) {
     return one->log_odds > other->log_odds;
   });
-  for (const LoopHypothesis* loop : here) {
+  for (const LoopCandidate* loop : here) {
     found.emplace_back(loop->b, map_.map_from_keyframe[loop->a] * loop->a_from_b);
   }
   return found;
 }
 
 /// The robot is where the stretch was laid, as far as that is sure.
-void MapFollower::settle_in(std::size_t first, LaidStretch stretch) {
+void Localizer::settle_in(std::size_t first, PlacedStretch stretch) {
   const std::size_t begin = first + stretch.sure_begin;
   for (std::size_t b = begin; b < first + stretch.sure_end; ++b) {
     map_.map_from_keyframe[b] = stretch.map_from_keyframe[b - first];
-    map_.component[b] = recognition_.home();
+    map_.component[b] = verification_.active_component();
   }
   take_link_as_in_map(begin);
   last_known_ = begin;
   for (std::size_t b = begin; b < first + stretch.sure_end; ++b) {
-    if (stretch.stand_ins[b - first]) know(b, std::move(*stretch.stand_ins[b - first]));
+    if (stretch.redundant[b - first]) know(b, std::move(*stretch.redundant[b - first]));
   }
 }
 
 /// Of a link between two keyframes that are both in their places.
-void MapFollower::take_link_as_in_map(std::size_t b) {
-  if (map_.component[b - 1] != recognition_.home()) {
-    map_.link_choice[b - 1] = kCut;
+void Localizer::take_link_as_in_map(std::size_t b) {
+  if (map_.component[b - 1] != verification_.active_component()) {
+    map_.edge_choice[b - 1] = kCut;
     return;
   }
   const Pose2 in_map = inverse(map_.map_from_keyframe[b - 1]) * map_.map_from_keyframe[b];
-  const std::vector<PoseHypothesis>& hypotheses = chain_.links[b - 1].hypotheses;
-  map_.link_choice[b - 1] = kCut;
-  for (std::size_t k = 0; k < hypotheses.size() && map_.link_choice[b - 1] == kCut; ++k) {
-    if (!is_within(inverse(hypotheses[k].ref_from_query) * in_map, kAsInMap_m, kAsInMap_rad)) continue;
-    map_.link_choice[b - 1] = static_cast<int>(k);
-    map_.held_by_loops[b - 1] = true;
+  const std::vector<MatchCandidate>& candidates = chain_.edges[b - 1].candidates;
+  map_.edge_choice[b - 1] = kCut;
+  for (std::size_t k = 0; k < candidates.size() && map_.edge_choice[b - 1] == kCut; ++k) {
+    if (!is_within(inverse(candidates[k].ref_from_query) * in_map, kAsInMap_m, kAsInMap_rad)) continue;
+    map_.edge_choice[b - 1] = static_cast<int>(k);
+    map_.loop_constrained[b - 1] = true;
   }
 }
 

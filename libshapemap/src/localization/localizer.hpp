@@ -16,7 +16,7 @@
 namespace shapemap {
 
 /// Where the robot is after the last keyframe that is certain.
-struct Bearings {
+struct LocalizationState {
   bool is_lost = false;
   double log_odds = kSureOfPlace;  ///< that it is where it is expected
 };
@@ -25,13 +25,13 @@ struct Bearings {
 /// knows counts only when what comes after agrees: of the robot's being where it is expected, each keyframe that is
 /// known raises the odds, and each that shows something else there lowers them. When they are too low, or after a link
 /// in doubt that neither of them decides, the robot is lost: all places that it may be at are tried.
-class MapFollower {
+class Localizer {
  public:
   /// `map` has links and a place for all keyframes; those before `first` are in theirs. `home` is the component that
   /// the robot was sure to be in; `bearings` are those at keyframe `first - 1`. `loops` are places where keyframes may
   /// have been before.
-  MapFollower(const KeyframeChain& chain, const RobustOptions& options, std::size_t home, std::size_t first,
-              Bearings bearings, const std::vector<LoopHypothesis>& loops, KeyframeMap& map);
+  Localizer(const KeyframeGraph& chain, const RobustOptions& options, std::size_t active_component, std::size_t first,
+            LocalizationState state, const std::vector<LoopCandidate>& loops, OptimizedMap& map);
 
   /// Along keyframes up to `last`; returns where to go on next time, with the bearings() there: what is not certain yet
   /// is looked at anew then.
@@ -40,9 +40,9 @@ class MapFollower {
   /// Puts a keyframe where the link to it says.
   void expect(std::size_t b);
 
-  const Bearings& bearings() const { return bearings_; }
+  const LocalizationState& state() const { return state_; }
   /// Per keyframe: what it was known by.
-  std::vector<std::optional<StandIn>>& stand_ins() { return stand_ins_; }
+  std::vector<std::optional<ReplacementKeyframe>>& redundant() { return stand_ins_; }
 
  private:
   bool link_exists(std::size_t b) const;
@@ -51,7 +51,7 @@ class MapFollower {
   bool step(std::size_t b);
   void make_certain(std::size_t end);
   void forget_pending();
-  void know(std::size_t b, StandIn stand_in);
+  void know(std::size_t b, ReplacementKeyframe replacement);
   void hold_back_from(std::size_t b);
 
   bool decide(std::size_t b);
@@ -60,23 +60,23 @@ class MapFollower {
   std::size_t end_of_stretch(std::size_t first, std::size_t last) const;
   std::size_t place(std::size_t first, std::size_t last);
   std::vector<std::pair<std::size_t, Pose2>> candidates(std::size_t first, std::size_t last) const;
-  void settle_in(std::size_t first, LaidStretch stretch);
+  void settle_in(std::size_t first, PlacedStretch stretch);
   void take_link_as_in_map(std::size_t b);
 
-  const KeyframeChain& chain_;
+  const KeyframeGraph& chain_;
   const RobustOptions& options_;
-  const std::vector<LoopHypothesis>& loops_;
-  KeyframeMap& map_;
-  Recognition recognition_;
-  std::vector<std::optional<StandIn>> stand_ins_;
+  const std::vector<LoopCandidate>& loops_;
+  OptimizedMap& map_;
+  PlaceVerification verification_;
+  std::vector<std::optional<ReplacementKeyframe>> stand_ins_;
 
-  Bearings bearings_;                                     ///< at keyframe open_ - 1
-  double log_odds_;                                       ///< that the robot is where it is expected now
-  std::size_t open_;                                      ///< the first keyframe that is not certain yet
-  std::size_t good_;                                      ///< the first that will not be without those to come
-  std::vector<std::pair<std::size_t, StandIn>> pending_;  ///< known again from there on, if it is true
-  std::size_t last_telling_;                              ///< that raised or lowered the odds, or the first
-  std::size_t last_known_;                                ///< or the one before the first
+  LocalizationState state_;  ///< at keyframe open_ - 1
+  double log_odds_;          ///< that the robot is where it is expected now
+  std::size_t open_;         ///< the first keyframe that is not certain yet
+  std::size_t good_;         ///< the first that will not be without those to come
+  std::vector<std::pair<std::size_t, ReplacementKeyframe>> pending_;  ///< known again from there on, if it is true
+  std::size_t last_telling_;                                          ///< that raised or lowered the odds, or the first
+  std::size_t last_known_;                                            ///< or the one before the first
 };
 
 }  // namespace shapemap

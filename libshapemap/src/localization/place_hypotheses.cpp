@@ -13,7 +13,7 @@ namespace {
 constexpr double kLeastLogOdds = 8.0;
 constexpr double kLeastLead = 4.0;
 
-bool are_one_place(const LaidStretch& one, const LaidStretch& other) {
+bool are_one_place(const PlacedStretch& one, const PlacedStretch& other) {
   const auto agree = [](const Pose2& a, const Pose2& b) {
     return is_within(inverse(a) * b, kContradicts_m, kContradicts_rad);
   };
@@ -23,22 +23,22 @@ bool are_one_place(const LaidStretch& one, const LaidStretch& other) {
 
 }  // namespace
 
-bool PlaceChoice::add(LaidStretch laid) {
+bool PlaceHypotheses::add(PlacedStretch laid) {
   tried_.push_back(std::move(laid));
   if (tried_.size() > 1 && tried_.back().log_odds <= tried_[best_].log_odds) return false;
   best_ = tried_.size() - 1;
   return true;
 }
 
-bool PlaceChoice::has(std::size_t keyframe, const Pose2& map_from_keyframe) const {
-  return std::any_of(tried_.begin(), tried_.end(), [&](const LaidStretch& laid) {
+bool PlaceHypotheses::has(std::size_t keyframe, const Pose2& map_from_keyframe) const {
+  return std::any_of(tried_.begin(), tried_.end(), [&](const PlacedStretch& laid) {
     return is_within(inverse(laid.map_from_keyframe[keyframe]) * map_from_keyframe, kAsInMap_m, kAsInMap_rad);
   });
 }
 
-bool PlaceChoice::is_sure() const {
+bool PlaceHypotheses::is_sure() const {
   if (tried_.empty() || best().log_odds < kLeastLogOdds) return false;
-  return std::all_of(tried_.begin(), tried_.end(), [&](const LaidStretch& laid) {
+  return std::all_of(tried_.begin(), tried_.end(), [&](const PlacedStretch& laid) {
     return best().log_odds - laid.log_odds >= kLeastLead || are_one_place(best(), laid);
   });
 }

@@ -9,20 +9,20 @@
 namespace shapemap {
 
 /// Which of several places of a map a stretch of the chain is at.
-class PlaceChoice {
+class PlaceHypotheses {
  public:
   /// True when it is the best so far.
-  bool add(LaidStretch laid);
+  bool add(PlacedStretch laid);
 
   /// Whether it was tried at all with this keyframe of it, counted from its first, at this place.
   bool has(std::size_t keyframe, const Pose2& map_from_keyframe) const;
 
   /// Whether the best is right: not by itself only, but much more likely than any other that was tried.
   bool is_sure() const;
-  const LaidStretch& best() const { return tried_[best_]; }
+  const PlacedStretch& best() const { return tried_[best_]; }
 
  private:
-  std::vector<LaidStretch> tried_;
+  std::vector<PlacedStretch> tried_;
   std::size_t best_ = 0;
 };
 

@@ -16,38 +16,38 @@ constexpr double kUnknownTells = -2.0;
 
 }  // namespace
 
-const Pose2& link_in_map(const KeyframeChain& chain, const KeyframeMap& map, std::size_t b) {
-  return chain.links[b - 1].hypotheses[static_cast<std::size_t>(map.link_choice[b - 1])].ref_from_query;
+const Pose2& link_in_map(const KeyframeGraph& chain, const OptimizedMap& map, std::size_t b) {
+  return chain.edges[b - 1].candidates[static_cast<std::size_t>(map.edge_choice[b - 1])].ref_from_query;
 }
 
-Pose2 pose_by(const KeyframeMap& map, const StandIn& stand_in) {
-  return map.map_from_keyframe[stand_in.keyframe] * stand_in.pose.ref_from_query;
+Pose2 pose_by(const OptimizedMap& map, const ReplacementKeyframe& replacement) {
+  return map.map_from_keyframe[replacement.keyframe] * replacement.pose.ref_from_query;
 }
 
-Look Recognition::look(const KeyframeMap& map, std::size_t b, std::size_t end) const {
+PlaceEvidence PlaceVerification::look(const OptimizedMap& map, std::size_t b, std::size_t end) const {
   const std::vector<std::size_t> there = at_place(map, b, end);
-  std::vector<StandIn> found = stand_ins_for(chain_, map.map_from_keyframe, b, there, 1, options_);
+  std::vector<ReplacementKeyframe> found = replacements_for(chain_, map.map_from_keyframe, b, there, 1, options_);
   // Those just before it show the same, or do not, wherever the two are.
   const auto tells = [&](std::size_t a) { return a + kKeyframesInUse < b; };
   if (!found.empty()) return {std::move(found.front()), tells(found.front().keyframe) ? kKnownTells : 0.0};
   return {std::nullopt, std::any_of(there.begin(), there.end(), tells) ? kUnknownTells : 0.0};
 }
 
-LaidStretch Recognition::lay(KeyframeMap& map, std::size_t first, std::size_t last, std::size_t seed,
-                             const Pose2& map_from_seed) const {
-  LaidStretch laid;
-  laid.stand_ins.resize(last - first);
+PlacedStretch PlaceVerification::lay(OptimizedMap& map, std::size_t first, std::size_t last, std::size_t seed,
+                                     const Pose2& map_from_seed) const {
+  PlacedStretch laid;
+  laid.redundant.resize(last - first);
   laid.map_from_keyframe.assign(last - first, {kPiecesApart_m, kPiecesApart_m, 0.0});
   laid.sure_begin = laid.sure_end = seed - first;
   double log_odds = kSureOfPlace;  // of one way from the seed
   const auto lay_one = [&](std::size_t b, const Pose2& expected) {
     map.map_from_keyframe[b] = expected;
-    Look seen = look(map, b, first);
+    PlaceEvidence seen = look(map, b, first);
     laid.log_odds += seen.log_odds;
     log_odds = std::min(kSureOfPlace, log_odds + seen.log_odds);
-    if (seen.stand_in) map.map_from_keyframe[b] = pose_by(map, *seen.stand_in);
+    if (seen.replacement) map.map_from_keyframe[b] = pose_by(map, *seen.replacement);
     laid.map_from_keyframe[b - first] = map.map_from_keyframe[b];
-    laid.stand_ins[b - first] = std::move(seen.stand_in);
+    laid.redundant[b - first] = std::move(seen.replacement);
   };
   lay_one(seed, map_from_seed);
   const double at_seed = log_odds;
@@ -66,10 +66,10 @@ LaidStretch Recognition::lay(KeyframeMap& map, std::size_t first, std::size_t la
 }
 
 /// Of those that stay, the nearest to where `b` is expected.
-std::vector<std::size_t> Recognition::at_place(const KeyframeMap& map, std::size_t b, std::size_t end) const {
+std::vector<std::size_t> PlaceVerification::at_place(const OptimizedMap& map, std::size_t b, std::size_t end) const {
   std::vector<std::pair<double, std::size_t>> near;
   for (std::size_t a = 0; a < end; ++a) {
-    if (map.component[a] != home_ || is_gone_[a]) continue;
+    if (map.component[a] != active_component_ || is_gone_[a]) continue;
     const Pose2 a_from_b = inverse(map.map_from_keyframe[a]) * map.map_from_keyframe[b];
     if (is_within(a_from_b, options_.keyframes.step_m, options_.keyframes.turn_rad)) {
       near.emplace_back(a_from_b.translation().norm(), a);
@@ -77,7 +77,7 @@ std::vector<std::size_t> Recognition::at_place(const KeyframeMap& map, std::size
   }
   std::sort(near.begin(), near.end());
   std::vector<std::size_t> nearest;
-  for (std::size_t k = 0; k < std::min(kStandInsTried, near.size()); ++k) nearest.push_back(near[k].second);
+  for (std::size_t k = 0; k < std::min(kReplacementsTried, near.size()); ++k) nearest.push_back(near[k].second);
   return nearest;
 }
 

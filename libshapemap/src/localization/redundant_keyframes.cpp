@@ -13,7 +13,7 @@ namespace shapemap {
 namespace {
 
 /// For each keyframe the earlier ones at its place, nearest first.
-std::vector<std::vector<std::size_t>> earlier_at_place(const KeyframeMap& map, const KeyframeOptions& options) {
+std::vector<std::vector<std::size_t>> earlier_at_place(const OptimizedMap& map, const KeyframeOptions& options) {
   std::vector<std::vector<std::pair<double, std::size_t>>> near(map.map_from_keyframe.size());
   for (const auto& [a, b] : near_pairs(map.map_from_keyframe, options.step_m)) {
     const Pose2 a_from_b = inverse(map.map_from_keyframe[a]) * map.map_from_keyframe[b];
@@ -42,26 +42,28 @@ std::vector<bool> near(const std::vector<bool>& is_unknown) {
 
 }  // namespace
 
-std::vector<StandIn> stand_ins_for(const KeyframeChain& chain, const std::vector<Pose2>& map_from_keyframe,
-                                   std::size_t b, const std::vector<std::size_t>& earlier, std::size_t most,
-                                   const RobustOptions& options) {
-  std::vector<StandIn> fitting;
+std::vector<ReplacementKeyframe> replacements_for(const KeyframeGraph& chain,
+                                                  const std::vector<Pose2>& map_from_keyframe, std::size_t b,
+                                                  const std::vector<std::size_t>& earlier, std::size_t most,
+                                                  const RobustOptions& options) {
+  std::vector<ReplacementKeyframe> fitting;
   for (const std::size_t a : earlier) {
     if (fitting.size() == most) break;
     const Pose2 expected = inverse(map_from_keyframe[a]) * map_from_keyframe[b];
-    const PoseHypothesis pose =
-        refined_hypothesis(*chain.keyframes[a].view, *chain.keyframes[b].view, expected, options.matcher.search);
+    const MatchCandidate pose =
+        refined_candidate(*chain.keyframes[a].view, *chain.keyframes[b].view, expected, options.matcher.search);
     const bool is_as_in_map = is_within(inverse(expected) * pose.ref_from_query, kAsInMap_m, kAsInMap_rad);
-    if (is_as_in_map && can_stand_for(pose)) fitting.push_back({a, pose});
+    if (is_as_in_map && shows_the_same(pose)) fitting.push_back({a, pose});
   }
   return fitting;
 }
 
-std::vector<bool> settled_keyframes(const KeyframeChain& chain, const KeyframeMap& map) {
+std::vector<bool> settled_keyframes(const KeyframeGraph& chain, const OptimizedMap& map) {
   const std::size_t count = chain.keyframes.size();
-  std::vector<bool> sure(chain.links.size());
+  std::vector<bool> sure(chain.edges.size());
   for (std::size_t i = 0; i < sure.size(); ++i) {
-    sure[i] = map.link_choice[i] != kCut && (map.held_by_loops[i] || stated_probability(chain.links[i]) >= kSureLink);
+    sure[i] =
+        map.edge_choice[i] != kCut && (map.loop_constrained[i] || stated_probability(chain.edges[i]) >= kSureLink);
   }
   std::vector<bool> settled(count, false);
   for (std::size_t i = 1; i + kKeyframesInUse < count; ++i) {
@@ -70,26 +72,29 @@ std::vector<bool> settled_keyframes(const KeyframeChain& chain, const KeyframeMa
   return settled;
 }
 
-StandIns find_stand_ins(const KeyframeChain& chain, const KeyframeMap& map, const RobustOptions& options, int threads) {
+RedundantKeyframes find_redundant_keyframes(const KeyframeGraph& chain, const OptimizedMap& map,
+                                            const RobustOptions& options, int threads) {
   const std::vector<bool> settled = settled_keyframes(chain, map);
   const std::vector<std::vector<std::size_t>> earlier = earlier_at_place(map, options.keyframes);
-  std::vector<std::vector<StandIn>> fitting(settled.size());
+  std::vector<std::vector<ReplacementKeyframe>> fitting(settled.size());
   parallel_for(settled.size(), threads, [&](std::size_t b) {
-    if (settled[b]) fitting[b] = stand_ins_for(chain, map.map_from_keyframe, b, earlier[b], kStandInsTried, options);
+    if (settled[b])
+      fitting[b] = replacements_for(chain, map.map_from_keyframe, b, earlier[b], kReplacementsTried, options);
   });
-  StandIns result;
+  RedundantKeyframes result;
   result.of_keyframe.resize(settled.size());
   std::vector<bool> is_unknown(settled.size(), false);
   for (std::size_t b = 0; b < settled.size(); ++b) {
     if (!settled[b]) continue;
     const auto is_long_before = [&](std::size_t a) { return a + kKeyframesInUse < b; };
     const bool again = std::any_of(earlier[b].begin(), earlier[b].end(), is_long_before);
-    const bool known = std::any_of(fitting[b].begin(), fitting[b].end(),
-                                   [&](const StandIn& candidate) { return is_long_before(candidate.keyframe); });
-    is_unknown[b] = again && !known && fitting[b].size() < kStandInsTried;  // or else not all were tried
+    const bool known = std::any_of(fitting[b].begin(), fitting[b].end(), [&](const ReplacementKeyframe& candidate) {
+      return is_long_before(candidate.keyframe);
+    });
+    is_unknown[b] = again && !known && fitting[b].size() < kReplacementsTried;  // or else not all were tried
     if (known) ++result.num_known;
     if (known || is_unknown[b]) ++result.num_again;
-    for (const StandIn& candidate : fitting[b]) {
+    for (const ReplacementKeyframe& candidate : fitting[b]) {
       if (result.of_keyframe[candidate.keyframe]) continue;  // it is not kept itself
       result.of_keyframe[b] = candidate;
       break;

@@ -24,33 +24,35 @@ inline constexpr double kAsInMap_m = 0.25;
 inline constexpr double kAsInMap_rad = 3 * kDegree;
 
 /// Keyframes at a place that are asked whether they can stand for another, nearest first.
-inline constexpr std::size_t kStandInsTried = 3;
+inline constexpr std::size_t kReplacementsTried = 3;
 
 /// An earlier keyframe that can stand for another.
-struct StandIn {
+struct ReplacementKeyframe {
   std::size_t keyframe = 0;
-  PoseHypothesis pose;  ///< of the other, in its frame
+  MatchCandidate pose;  ///< of the other, in its frame
 };
 
 /// Those of `earlier`, in their order, that can stand for keyframe `b` where the map has the two; at most `most`.
-std::vector<StandIn> stand_ins_for(const KeyframeChain& chain, const std::vector<Pose2>& map_from_keyframe,
-                                   std::size_t b, const std::vector<std::size_t>& earlier, std::size_t most,
-                                   const RobustOptions& options);
+std::vector<ReplacementKeyframe> replacements_for(const KeyframeGraph& chain,
+                                                  const std::vector<Pose2>& map_from_keyframe, std::size_t b,
+                                                  const std::vector<std::size_t>& earlier, std::size_t most,
+                                                  const RobustOptions& options);
 
 /// Per keyframe: whether it may go when another can stand for it. Those at doubtful links stay, those with several
 /// sub-scans, and the last few.
-std::vector<bool> settled_keyframes(const KeyframeChain& chain, const KeyframeMap& map);
+std::vector<bool> settled_keyframes(const KeyframeGraph& chain, const OptimizedMap& map);
 
 /// What a map says of each of its keyframes at the place of others.
-struct StandIns {
-  std::vector<std::optional<StandIn>> of_keyframe;  ///< which one can stand for it, where it may go
-  std::vector<bool> is_in_doubt;                    ///< near one that shows something else than its place did before
-  std::size_t num_again = 0;                        ///< keyframes at a place where the robot had been long before
-  std::size_t num_known = 0;                        ///< those of them that show the same as it did then
+struct RedundantKeyframes {
+  std::vector<std::optional<ReplacementKeyframe>> of_keyframe;  ///< which one can stand for it, where it may go
+  std::vector<bool> is_in_doubt;  ///< near one that shows something else than its place did before
+  std::size_t num_again = 0;      ///< keyframes at a place where the robot had been long before
+  std::size_t num_known = 0;      ///< those of them that show the same as it did then
 
   /// Of a map that is right, nearly all do; where rows of like rooms are laid on each other, a fourth does not.
   bool are_of_right_map() const { return static_cast<double>(num_known) >= 0.95 * static_cast<double>(num_again); }
 };
-StandIns find_stand_ins(const KeyframeChain& chain, const KeyframeMap& map, const RobustOptions& options, int threads);
+RedundantKeyframes find_redundant_keyframes(const KeyframeGraph& chain, const OptimizedMap& map,
+                                            const RobustOptions& options, int threads);
 
 }  // namespace shapemap

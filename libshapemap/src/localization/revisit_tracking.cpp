@@ -10,23 +10,23 @@ namespace shapemap {
 namespace {
 
 /// What the chain says of links that the map does not know.
-void add_links(const KeyframeChain& chain, KeyframeMap& map) {
-  for (std::size_t i = map.link_choice.size(); i < chain.links.size(); ++i) {
-    const KeyframeLink& link = chain.links[i];
-    map.link_choice.push_back(link.hypotheses.empty() ? kCut : static_cast<int>(link.choice.alternative));
-    map.held_by_loops.push_back(false);
+void add_links(const KeyframeGraph& chain, OptimizedMap& map) {
+  for (std::size_t i = map.edge_choice.size(); i < chain.edges.size(); ++i) {
+    const OdometryEdge& link = chain.edges[i];
+    map.edge_choice.push_back(link.candidates.empty() ? kCut : static_cast<int>(link.choice.candidate));
+    map.loop_constrained.push_back(false);
   }
 }
 
-void add_link_constraints(const KeyframeChain& chain, std::size_t first, KeyframeMap& map) {
-  for (std::size_t i = first; i < chain.links.size(); ++i) {
-    if (map.link_choice[i] == kCut) continue;
-    map.constraints.push_back(link_constraint(chain, i, static_cast<std::size_t>(map.link_choice[i])));
+void add_link_constraints(const KeyframeGraph& chain, std::size_t first, OptimizedMap& map) {
+  for (std::size_t i = first; i < chain.edges.size(); ++i) {
+    if (map.edge_choice[i] == kCut) continue;
+    map.constraints.push_back(edge_constraint(chain, i, static_cast<std::size_t>(map.edge_choice[i])));
   }
 }
 
 /// The last of the first `end` keyframes of which the place is certain: others hang together with it.
-std::size_t last_certain(const KeyframeMap& map, std::size_t end) {
+std::size_t last_certain(const OptimizedMap& map, std::size_t end) {
   std::vector<std::size_t> size(map.component.size(), 0);
   for (const std::size_t component : map.component) ++size[component];
   std::size_t last = end - 1;
@@ -36,15 +36,15 @@ std::size_t last_certain(const KeyframeMap& map, std::size_t end) {
 
 }  // namespace
 
-void Revisits::start(const KeyframeChain& chain, const KeyframeMap& map, std::size_t num_settled) {
+void RevisitTracker::start(const KeyframeGraph& chain, const OptimizedMap& map, std::size_t num_settled) {
   const std::size_t last = last_certain(map, num_settled);
-  bearings_ = {};
-  bearings_.is_lost = last + 1 < num_settled;
-  home_position_ = chain.keyframes[map.component[last]].position_index;
+  state_ = {};
+  state_.is_lost = last + 1 < num_settled;
+  home_position_ = chain.keyframes[map.component[last]].scan_index;
   renew(map, chain.keyframes.size() - num_settled);
 }
 
-Revisits::Followed Revisits::follow(const KeyframeChain& chain, const std::vector<LoopHypothesis>& loops) {
+RevisitTracker::Followed RevisitTracker::follow(const KeyframeGraph& chain, const std::vector<LoopCandidate>& loops) {
   const std::size_t first = settled_.map_from_keyframe.size();
   const std::size_t count = chain.keyframes.size();
   const std::size_t last = count - std::min(count, kKeyframesInUse);
@@ -53,31 +53,32 @@ Revisits::Followed Revisits::follow(const KeyframeChain& chain, const std::vecto
   add_links(chain, result.map);
   result.map.map_from_keyframe.resize(count);
   for (std::size_t i = first; i < count; ++i) result.map.component.push_back(i);
-  const auto home =
+  const auto active_component =
       std::lower_bound(chain.keyframes.begin(), chain.keyframes.end(), home_position_,
-                       [](const Keyframe& k, std::size_t position) { return k.position_index < position; });
-  const std::size_t home_component = result.map.component[static_cast<std::size_t>(home - chain.keyframes.begin())];
-  MapFollower follower(chain, options_, home_component, first, bearings_, loops, result.map);
+                       [](const Keyframe& k, std::size_t position) { return k.scan_index < position; });
+  const std::size_t home_component =
+      result.map.component[static_cast<std::size_t>(active_component - chain.keyframes.begin())];
+  Localizer follower(chain, options_, home_component, first, state_, loops, result.map);
   result.num_followed = follower.go(std::max(first, last));
   for (std::size_t b = result.num_followed; b < count; ++b) follower.expect(b);
   add_link_constraints(chain, first - 1, result.map);
-  bearings_ = follower.bearings();
-  result.stand_ins = std::move(follower.stand_ins());
+  state_ = follower.state();
+  result.redundant = std::move(follower.redundant());
   // A link that may still change must not become what the map says: it would when the keyframe before it went.
-  if (bearings_.is_lost) result.stand_ins[result.num_followed - 1].reset();
+  if (state_.is_lost) result.redundant[result.num_followed - 1].reset();
   const std::vector<bool> may_go = settled_keyframes(chain, result.map);
   for (std::size_t b = first; b < count; ++b) {
-    if (!may_go[b]) result.stand_ins[b].reset();
+    if (!may_go[b]) result.redundant[b].reset();
   }
   return result;
 }
 
-void Revisits::renew(KeyframeMap map, std::size_t num_open) {
+void RevisitTracker::renew(OptimizedMap map, std::size_t num_open) {
   const std::size_t count = map.map_from_keyframe.size() - num_open;
   map.map_from_keyframe.resize(count);
   map.component.resize(count);
-  map.link_choice.resize(count - 1);
-  map.held_by_loops.resize(count - 1);
+  map.edge_choice.resize(count - 1);
+  map.loop_constrained.resize(count - 1);
   const auto is_open = [&](const PoseConstraint& constraint) { return std::max(constraint.a, constraint.b) >= count; };
   map.constraints.erase(std::remove_if(map.constraints.begin(), map.constraints.end(), is_open), map.constraints.end());
   settled_ = std::move(map);

@@ -16,33 +16,33 @@ namespace shapemap {
 
 /// Follows the chain from the end of a settled map on, and knows places again that have a keyframe: where the robot is
 /// sure to be in the map, no more needs to be solved for that.
-class Revisits {
+class RevisitTracker {
  public:
-  explicit Revisits(const RobustOptions& options) : options_(options) {}
+  explicit RevisitTracker(const RobustOptions& options) : options_(options) {}
 
   /// `map` is solved for all keyframes of the chain; those after the first `num_settled` may still change.
-  void start(const KeyframeChain& chain, const KeyframeMap& map, std::size_t num_settled);
+  void start(const KeyframeGraph& chain, const OptimizedMap& map, std::size_t num_settled);
 
-  /// All of the chain, with what `stand_ins` knows again in its place. Those keyframes are still to be retired, and the
+  /// All of the chain, with what `redundant` knows again in its place. Those keyframes are still to be retired, and the
   /// map that is left then to be given to renew().
   struct Followed {
-    KeyframeMap map;
-    std::vector<std::optional<StandIn>> stand_ins;  ///< per keyframe: of those that may go
-    std::size_t num_followed = 0;                   ///< the keyframes after the first so many may still change
+    OptimizedMap map;
+    std::vector<std::optional<ReplacementKeyframe>> redundant;  ///< per keyframe: of those that may go
+    std::size_t num_followed = 0;  ///< the keyframes after the first so many may still change
   };
-  Followed follow(const KeyframeChain& chain, const std::vector<LoopHypothesis>& loops);
+  Followed follow(const KeyframeGraph& chain, const std::vector<LoopCandidate>& loops);
 
   /// Whether loops help: the robot does not know where it is in the map.
-  bool is_lost() const { return bearings_.is_lost; }
+  bool is_lost() const { return state_.is_lost; }
 
   /// Without the keyframes that were retired; the last `num_open` may still change.
-  void renew(KeyframeMap map, std::size_t num_open);
+  void renew(OptimizedMap map, std::size_t num_open);
 
  private:
   const RobustOptions& options_;
-  KeyframeMap settled_;
+  OptimizedMap settled_;
   std::size_t home_position_ = 0;  ///< of the first keyframe of the part of the map that the robot was sure to be in
-  Bearings bearings_;
+  LocalizationState state_;
 };
 
 }  // namespace shapemap

@@ -35,11 +35,11 @@ WorthOfClusters claims_on(const WorthOfNodes& stretch, const std::map<std::size_
 
 }  // namespace
 
-std::vector<std::vector<LoopRival>> loop_rivals(const std::vector<LoopCluster>& clusters) {
+std::vector<std::vector<ConflictingLoop>> conflicting_loops(const std::vector<LoopCluster>& clusters) {
   std::vector<Stretches> stretches(clusters.size());
   std::map<std::size_t, WorthOfClusters> by_node;
   for (std::size_t k = 0; k < clusters.size(); ++k) {
-    for (const LoopHypothesis& member : clusters[k].members) {
+    for (const LoopCandidate& member : clusters[k].members) {
       const double worth = worth_of_member(member);
       keep_best(stretches[k].a, member.a, worth);
       keep_best(stretches[k].b, member.b, worth);
@@ -47,7 +47,7 @@ std::vector<std::vector<LoopRival>> loop_rivals(const std::vector<LoopCluster>& 
       keep_best(by_node[member.b], k, worth);
     }
   }
-  std::vector<std::vector<LoopRival>> rivals(clusters.size());
+  std::vector<std::vector<ConflictingLoop>> rivals(clusters.size());
   for (std::size_t k = 0; k < clusters.size(); ++k) {
     WorthOfClusters strongest;
     for (const WorthOfNodes* stretch : {&stretches[k].a, &stretches[k].b}) {

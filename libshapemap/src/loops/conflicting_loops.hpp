@@ -9,13 +9,13 @@
 namespace shapemap {
 
 /// A cluster that says of some of the same nodes that they are elsewhere, and how strongly, by these nodes alone.
-struct LoopRival {
+struct ConflictingLoop {
   std::size_t cluster = 0;
   double strength = 0.0;
 };
 
 /// For each cluster, all others that share nodes with one of its two stretches. Whether they contradict it depends on
 /// the map: two earlier visits to one place are no rivals.
-std::vector<std::vector<LoopRival>> loop_rivals(const std::vector<LoopCluster>& clusters);
+std::vector<std::vector<ConflictingLoop>> conflicting_loops(const std::vector<LoopCluster>& clusters);
 
 }  // namespace shapemap

@@ -18,14 +18,14 @@ std::size_t apart(std::size_t i, std::size_t j) { return i < j ? j - i : i - j; 
 
 class Clustering {
  public:
-  Clustering(const std::vector<LoopHypothesis>& hypotheses, const std::vector<Pose2>& map_from_node,
+  Clustering(const std::vector<LoopCandidate>& candidates, const std::vector<Pose2>& map_from_node,
              const std::vector<std::size_t>& piece_of_node, const ClusterOptions& options)
-      : hypotheses_(hypotheses),
+      : hypotheses_(candidates),
         map_from_node_(map_from_node),
         piece_of_node_(piece_of_node),
         options_(options),
-        order_(hypotheses.size()),
-        cluster_(hypotheses.size()) {
+        order_(candidates.size()),
+        cluster_(candidates.size()) {
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     std::iota(cluster_.begin(), cluster_.end(), std::size_t{0});
     std::stable_sort(order_.begin(), order_.end(),
@@ -35,9 +35,9 @@ class Clustering {
   std::vector<LoopCluster> clusters() {
     const auto window = static_cast<std::size_t>(options_.window);
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      const LoopHypothesis& one = hypotheses_[order_[i]];
+      const LoopCandidate& one = hypotheses_[order_[i]];
       for (std::size_t j = i + 1; j < order_.size(); ++j) {
-        const LoopHypothesis& other = hypotheses_[order_[j]];
+        const LoopCandidate& other = hypotheses_[order_[j]];
         if (other.b - one.b > window) break;
         if (apart(one.a, other.a) <= window && say_the_same(one, other)) join(order_[i], order_[j]);
       }
@@ -56,7 +56,7 @@ class Clustering {
   }
 
  private:
-  bool say_the_same(const LoopHypothesis& one, const LoopHypothesis& other) const {
+  bool say_the_same(const LoopCandidate& one, const LoopCandidate& other) const {
     if (piece_of_node_[one.a] != piece_of_node_[other.a] || piece_of_node_[one.b] != piece_of_node_[other.b]) {
       return false;
     }
@@ -78,12 +78,12 @@ class Clustering {
 
   static void rate(LoopCluster& cluster) {
     std::stable_sort(cluster.members.begin(), cluster.members.end(),
-                     [](const LoopHypothesis& a, const LoopHypothesis& b) { return a.log_odds > b.log_odds; });
+                     [](const LoopCandidate& a, const LoopCandidate& b) { return a.log_odds > b.log_odds; });
     std::set<std::size_t> of_a;
     std::set<std::size_t> of_b;
     double by_a = 0.0;
     double by_b = 0.0;
-    for (const LoopHypothesis& member : cluster.members) {
+    for (const LoopCandidate& member : cluster.members) {
       const double worth = worth_of_member(member);
       if (of_a.insert(member.a).second) by_a += worth;
       if (of_b.insert(member.b).second) by_b += worth;
@@ -93,7 +93,7 @@ class Clustering {
     cluster.strength = std::min(by_a, by_b);
   }
 
-  const std::vector<LoopHypothesis>& hypotheses_;
+  const std::vector<LoopCandidate>& hypotheses_;
   const std::vector<Pose2>& map_from_node_;
   const std::vector<std::size_t>& piece_of_node_;
   const ClusterOptions& options_;
@@ -103,14 +103,12 @@ class Clustering {
 
 }  // namespace
 
-double worth_of_member(const LoopHypothesis& member) {
-  return std::clamp(member.log_odds + kOffset, 0.0, kMostPerNode);
-}
+double worth_of_member(const LoopCandidate& member) { return std::clamp(member.log_odds + kOffset, 0.0, kMostPerNode); }
 
-std::vector<LoopCluster> loop_clusters(const std::vector<LoopHypothesis>& hypotheses,
+std::vector<LoopCluster> loop_clusters(const std::vector<LoopCandidate>& candidates,
                                        const std::vector<Pose2>& map_from_node,
                                        const std::vector<std::size_t>& piece_of_node, const ClusterOptions& options) {
-  return Clustering(hypotheses, map_from_node, piece_of_node, options).clusters();
+  return Clustering(candidates, map_from_node, piece_of_node, options).clusters();
 }
 
 }  // namespace shapemap

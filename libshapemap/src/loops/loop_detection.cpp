@@ -32,28 +32,28 @@ struct Pair {
 };
 
 /// Where most of the pairs have little in common, all rotations would be tried on each.
-HypothesisSearchOptions without_all_rotations(HypothesisSearchOptions search) {
-  search.hypotheses.all_rotations_below = -std::numeric_limits<double>::infinity();
+MatchSearchOptions without_all_rotations(MatchSearchOptions search) {
+  search.candidates.all_rotations_below = -std::numeric_limits<double>::infinity();
   return search;
 }
 
 /// For very many pairs: a search with less effort, which other scans of the same two stretches make up for.
-HypothesisSearchOptions quick(HypothesisSearchOptions search) {
-  search.hypotheses.rotation_peaks = std::max(1, search.hypotheses.rotation_peaks * 3 / 4);
-  search.hypotheses.shape_segments = 0;
-  search.hypotheses.refined = std::max(1, search.hypotheses.refined / 2);
+MatchSearchOptions quick(MatchSearchOptions search) {
+  search.candidates.rotation_peaks = std::max(1, search.candidates.rotation_peaks * 3 / 4);
+  search.candidates.shape_segments = 0;
+  search.candidates.refined = std::max(1, search.candidates.refined / 2);
   search.voting.peaks = std::max(1, search.voting.peaks / 2);
   return search;
 }
 
 /// How pairs are aligned, and what of it is kept.
 struct PairSearch {
-  HypothesisSearchOptions options;
+  MatchSearchOptions options;
   SearchKind kind;
   std::size_t most_poses;  ///< of each pair
   double least_probability;
   Execution execution;
-  AlignmentStore* store;
+  MatchCache* store;
 };
 
 /// That the two scans are of one place, and that it is where the alignment says.
@@ -62,10 +62,10 @@ double log_odds_of_place(double probability, const Eigen::Matrix3d& covariance) 
   return log_odds_of(p) - std::log(std::max(1.0, worst_deviation_m(covariance) / kHeld_m));
 }
 
-std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, const PairSearch& search) {
-  const std::vector<PoseHypothesis> poses =
-      pose_hypotheses(*views[pair.a], *views[pair.b], search.options, {pair.a, pair.b, search.kind}, search.store);
-  std::vector<LoopHypothesis> found;
+std::vector<LoopCandidate> aligned(const NodeViews& views, const Pair& pair, const PairSearch& search) {
+  const std::vector<MatchCandidate> poses =
+      find_candidates(*views[pair.a], *views[pair.b], search.options, {pair.a, pair.b, search.kind}, search.store);
+  std::vector<LoopCandidate> found;
   for (std::size_t k = 0; k < std::min(search.most_poses, poses.size()); ++k) {
     const double margin = k == 0 ? lead_of_first(poses) : poses[k].score - poses[0].score;
     const double probability = match_probability(poses[k], margin);
@@ -78,12 +78,12 @@ std::vector<LoopHypothesis> aligned(const NodeViews& views, const Pair& pair, co
 
 /// Adds to `all`. Throws Interrupted when the observer asks to stop.
 void align_all(const NodeViews& views, const std::vector<Pair>& pairs, const PairSearch& search,
-               std::vector<LoopHypothesis>& all) {
+               std::vector<LoopCandidate>& all) {
   RunObserver& observer = search.execution.observer;
   for (std::size_t first = 0; first < pairs.size(); first += kBlock) {
     if (!observer.keep_going()) throw Interrupted();
     const std::size_t count = std::min(kBlock, pairs.size() - first);
-    std::vector<std::vector<LoopHypothesis>> found(count);
+    std::vector<std::vector<LoopCandidate>> found(count);
     parallel_for(count, search.execution.threads,
                  [&](std::size_t i) { found[i] = aligned(views, pairs[first + i], search); });
     for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
@@ -93,13 +93,13 @@ void align_all(const NodeViews& views, const std::vector<Pair>& pairs, const Pai
 
 }  // namespace
 
-std::vector<LoopHypothesis> likely_loops(const NodeViews& views, std::size_t first, const LoopSearch& search) {
+std::vector<LoopCandidate> likely_loops(const NodeViews& views, std::size_t first, const LoopSearch& search) {
   const LoopDetectionOptions& options = search.detection;
   const int threads = search.execution.threads;
-  std::vector<PlaceSignature> signatures(views.size());
-  parallel_for(views.size(), threads, [&](std::size_t i) { signatures[i] = place_signature(*views[i]); });
+  std::vector<PlaceDescriptor> descriptors(views.size());
+  parallel_for(views.size(), threads, [&](std::size_t i) { descriptors[i] = place_descriptor(*views[i]); });
   PlaceIndex index;
-  for (const PlaceSignature& signature : signatures) index.add(signature);
+  for (const PlaceDescriptor& descriptor : descriptors) index.add(descriptor);
 
   const auto shortest = static_cast<std::size_t>(options.shortest_loop);
   const auto count = static_cast<std::size_t>(options.likely_places);
@@ -117,7 +117,7 @@ std::vector<LoopHypothesis> likely_loops(const NodeViews& views, std::size_t fir
                            options.least_probability,
                            search.execution,
                            search.store};
-  std::vector<LoopHypothesis> found;
+  std::vector<LoopCandidate> found;
   try {
     align_all(views, pairs, quickly, found);
   } catch (const Interrupted&) {  // those that were found are of use
@@ -125,17 +125,21 @@ std::vector<LoopHypothesis> likely_loops(const NodeViews& views, std::size_t fir
   return found;
 }
 
-std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<std::size_t>& links,
-                                    const LoopSearch& search) {
+std::vector<LoopCandidate> cross_edge_matches(const NodeViews& views, const std::vector<std::size_t>& edges,
+                                              const LoopSearch& search) {
   std::vector<Pair> pairs;
-  for (const std::size_t link : links) {
+  for (const std::size_t link : edges) {
     for (std::size_t a = link + 1 - std::min(kBridgeNodes, link + 1); a <= link; ++a) {
       for (std::size_t b = link + 1; b < std::min(views.size(), link + 1 + kBridgeNodes); ++b) pairs.push_back({a, b});
     }
   }
-  const PairSearch thoroughly{
-      without_all_rotations(search.matching), SearchKind::kBorrowed, kBridgePoses, 0.0, search.execution, search.store};
-  std::vector<LoopHypothesis> found;
+  const PairSearch thoroughly{without_all_rotations(search.matching),
+                              SearchKind::kMultiReference,
+                              kBridgePoses,
+                              0.0,
+                              search.execution,
+                              search.store};
+  std::vector<LoopCandidate> found;
   align_all(views, pairs, thoroughly, found);
   return found;
 }

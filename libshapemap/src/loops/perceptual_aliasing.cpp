@@ -26,17 +26,17 @@ constexpr double kLeastLogOdds = -2.0;
 /// How surely the chain knows where its nodes are to each other.
 class SureChain {
  public:
-  SureChain(const std::vector<ChainLink>& links, const std::vector<Pose2>& map_of_chain)
-      : map_from_node_(map_of_chain), piece_(map_of_chain.size(), 0), variance_m2_(map_of_chain.size(), 0.0) {
-    for (std::size_t i = 0; i < links.size(); ++i) {
-      const bool is_sure = links[i].exists() && links[i].probability >= kSure;
+  SureChain(const std::vector<EdgeChoices>& edges, const std::vector<Pose2>& map_of_odometry)
+      : map_from_node_(map_of_odometry), piece_(map_of_odometry.size(), 0), variance_m2_(map_of_odometry.size(), 0.0) {
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const bool is_sure = edges[i].exists() && edges[i].probability >= kSure;
       piece_[i + 1] = piece_[i] + (is_sure ? 0 : 1);
       variance_m2_[i + 1] = variance_m2_[i];
-      if (is_sure) variance_m2_[i + 1] += variance_m2(links[i].alternatives.front().covariance);
+      if (is_sure) variance_m2_[i + 1] += variance_m2(edges[i].candidates.front().covariance);
     }
   }
 
-  bool contradicts(const LoopHypothesis& one) const {
+  bool contradicts(const LoopCandidate& one) const {
     if (piece_[one.a] != piece_[one.b] || one.b - one.a > kLongest) return false;
     const Pose2 off = inverse(one.a_from_b) * (inverse(map_from_node_[one.a]) * map_from_node_[one.b]);
     const double deviation_m = std::sqrt(variance_m2_[one.b] - variance_m2_[one.a] + variance_m2(one.covariance));
@@ -53,15 +53,15 @@ class SureChain {
 
 }  // namespace
 
-std::vector<LoopHypothesis> without_look_alikes(const std::vector<LoopHypothesis>& hypotheses,
-                                                const std::vector<ChainLink>& links,
-                                                const std::vector<Pose2>& map_of_chain) {
-  const std::size_t count = map_of_chain.size();
-  if (links.size() >= std::max<std::size_t>(count, 1)) throw std::invalid_argument("more links than nodes to join");
-  const SureChain chain(links, map_of_chain);
-  std::vector<LoopHypothesis> kept;
+std::vector<LoopCandidate> without_aliases(const std::vector<LoopCandidate>& candidates,
+                                           const std::vector<EdgeChoices>& edges,
+                                           const std::vector<Pose2>& map_of_odometry) {
+  const std::size_t count = map_of_odometry.size();
+  if (edges.size() >= std::max<std::size_t>(count, 1)) throw std::invalid_argument("more links than nodes to join");
+  const SureChain chain(edges, map_of_odometry);
+  std::vector<LoopCandidate> kept;
   std::vector<double> alike(count, kLeastLogOdds);
-  for (const LoopHypothesis& one : hypotheses) {
+  for (const LoopCandidate& one : candidates) {
     if (!chain.contradicts(one)) {
       kept.push_back(one);
       continue;
@@ -72,7 +72,7 @@ std::vector<LoopHypothesis> without_look_alikes(const std::vector<LoopHypothesis
       }
     }
   }
-  for (LoopHypothesis& one : kept) one.log_odds -= std::max(alike[one.a], alike[one.b]) - kLeastLogOdds;
+  for (LoopCandidate& one : kept) one.log_odds -= std::max(alike[one.a], alike[one.b]) - kLeastLogOdds;
   return kept;
 }
 

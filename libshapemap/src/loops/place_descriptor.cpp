@@ -14,37 +14,37 @@ constexpr std::size_t kMaxPoints = 150;
 
 /// Bins are centred about 0, 45, 90, ... degrees, where most of the angles in buildings are.
 std::size_t angle_bin(double angle_rad) {
-  const double turns = angle_rad / (2.0 * kPi) + 0.5 / static_cast<double>(kSignatureAngles);
-  const auto bin = static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(kSignatureAngles));
-  return std::min(bin, kSignatureAngles - 1);
+  const double turns = angle_rad / (2.0 * kPi) + 0.5 / static_cast<double>(kDescriptorAngles);
+  const auto bin = static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(kDescriptorAngles));
+  return std::min(bin, kDescriptorAngles - 1);
 }
 
 }  // namespace
 
-PlaceSignature place_signature(const ScanView& view) {
-  PlaceSignature signature{};
+PlaceDescriptor place_descriptor(const ScanView& view) {
+  PlaceDescriptor descriptor{};
   const std::size_t stride = std::max<std::size_t>(1, view.size() / kMaxPoints);
   for (std::size_t i = 0; i < view.size(); i += stride) {
     for (std::size_t j = 0; j < view.size(); j += stride) {
       const Point2 between_m = view.points[j].p_m - view.points[i].p_m;
       const double distance_m = between_m.norm();
       const auto distance_bin = static_cast<std::size_t>(distance_m / kDistanceBin_m);
-      if (distance_m < kLeastDistance_m || distance_bin >= kSignatureDistances) continue;
+      if (distance_m < kLeastDistance_m || distance_bin >= kDescriptorDistances) continue;
       const double from_rad = view.points[i].tangent_rad;
       const std::size_t turn = angle_bin(view.points[j].tangent_rad - from_rad);
       const std::size_t side = angle_bin(std::atan2(between_m.y(), between_m.x()) - from_rad);
-      signature[(distance_bin * kSignatureAngles + turn) * kSignatureAngles + side] += 1.0F;
+      descriptor[(distance_bin * kDescriptorAngles + turn) * kDescriptorAngles + side] += 1.0F;
     }
   }
   float sum = 0.0F;
-  for (const float count : signature) sum += count;
-  if (sum == 0.0F) return signature;
-  for (float& count : signature) count = std::sqrt(count / sum);
-  return signature;
+  for (const float count : descriptor) sum += count;
+  if (sum == 0.0F) return descriptor;
+  for (float& count : descriptor) count = std::sqrt(count / sum);
+  return descriptor;
 }
 
-double likeness(const PlaceSignature& a, const PlaceSignature& b) {
-  using Bins = Eigen::Map<const Eigen::Matrix<float, static_cast<int>(kSignatureBins), 1>>;
+double similarity(const PlaceDescriptor& a, const PlaceDescriptor& b) {
+  using Bins = Eigen::Map<const Eigen::Matrix<float, static_cast<int>(kDescriptorBins), 1>>;
   return static_cast<double>(Bins(a.data()).dot(Bins(b.data())));
 }
 
@@ -52,10 +52,10 @@ std::vector<LikelyPlace> PlaceIndex::most_alike(std::size_t node, std::size_t en
   std::vector<LikelyPlace> places;
   places.reserve(end);
   for (std::size_t other = 0; other < end; ++other) {
-    places.push_back({other, likeness(signatures_[node], signatures_[other])});
+    places.push_back({other, similarity(descriptors_[node], descriptors_[other])});
   }
   const auto less_alike = [](const LikelyPlace& a, const LikelyPlace& b) {
-    return a.likeness != b.likeness ? a.likeness < b.likeness : a.node > b.node;
+    return a.similarity != b.similarity ? a.similarity < b.similarity : a.node > b.node;
   };
   std::make_heap(places.begin(), places.end(), less_alike);  // few are needed in order
   std::vector<LikelyPlace> apart;

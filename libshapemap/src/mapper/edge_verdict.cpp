@@ -5,32 +5,32 @@
 
 namespace shapemap {
 
-void judge_link(const KeyframeChain& chain, const KeyframeMap& map, std::size_t link, const ConfidenceOptions& options,
-                TraceSink* sink, PositionResult& outcome) {
-  outcome.held_by_loops = map.held_by_loops[link];
-  const std::size_t before = chain.keyframes[link].position_index;
+void judge_edge(const KeyframeGraph& chain, const OptimizedMap& map, std::size_t link, const ConfidenceOptions& options,
+                TraceSink* sink, ScanResult& outcome) {
+  outcome.loop_constrained = map.loop_constrained[link];
+  const std::size_t before = chain.keyframes[link].scan_index;
   if (chain.keyframes[link].session != outcome.session) return;  // there is nothing to align to
   outcome.reference = before;
-  const KeyframeLink& of = chain.links[link];
-  const std::vector<PoseHypothesis>& hypotheses = of.hypotheses;
+  const OdometryEdge& of = chain.edges[link];
+  const std::vector<MatchCandidate>& candidates = of.candidates;
   const Choice& choice = of.choice;
-  const bool is_cut = map.link_choice[link] == kCut;
-  const std::size_t best = of.revised ? of.revised->hypothesis : choice.alternative;
-  const std::size_t taken = is_cut ? best : static_cast<std::size_t>(map.link_choice[link]);
-  const bool is_first_choice = taken == choice.alternative;
+  const bool is_cut = map.edge_choice[link] == kCut;
+  const std::size_t best = of.verified ? of.verified->candidate : choice.candidate;
+  const std::size_t taken = is_cut ? best : static_cast<std::size_t>(map.edge_choice[link]);
+  const bool is_first_choice = taken == choice.candidate;
   double margin = choice.margin;
-  if (!is_first_choice) margin = hypotheses[taken].score - hypotheses[choice.alternative].score;
+  if (!is_first_choice) margin = candidates[taken].score - candidates[choice.candidate].score;
   std::optional<double> probability;
-  if (!hypotheses.empty()) {
-    probability = of.revised ? of.revised->probability : probability_by_two_scans(of, taken, margin);
+  if (!candidates.empty()) {
+    probability = of.verified ? of.verified->probability : probability_by_two_scans(of, taken, margin);
   }
-  outcome.alignment = judged(hypotheses, taken, margin, options, probability);
+  outcome.alignment = judged(candidates, taken, margin, options, probability);
   outcome.reason = outcome.alignment.reason;
-  if (is_cut && !hypotheses.empty() && outcome.reason.empty()) {
-    outcome.reason = outcome.held_by_loops ? "the rest of the map speaks against it"
-                                           : "less probable than it takes not to split the map";
+  if (is_cut && !candidates.empty() && outcome.reason.empty()) {
+    outcome.reason = outcome.loop_constrained ? "the rest of the map speaks against it"
+                                              : "less probable than it takes not to split the map";
   }
-  if (sink && !hypotheses.empty()) sink->on_choice({before, outcome.position_index, taken, margin});
+  if (sink && !candidates.empty()) sink->on_choice({before, outcome.scan_index, taken, margin});
 }
 
 }  // namespace shapemap

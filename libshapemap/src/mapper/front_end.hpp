@@ -21,7 +21,7 @@ namespace shapemap {
 /// entry for each position to `result`, without a place. `sink` and `store` may be null.
 class FrontEnd {
  public:
-  FrontEnd(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink, AlignmentStore* store,
+  FrontEnd(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink, MatchCache* store,
            MapResult& result);
 
   /// Goes on until there are `most_keyframes`, and some more. False when the log is at its end, or the observer asks to
@@ -29,40 +29,40 @@ class FrontEnd {
   bool extend(std::size_t most_keyframes);
 
   /// Keyframes may be taken out of it between two calls of extend(), but for the last few.
-  KeyframeChain& chain() { return chain_; }
+  KeyframeGraph& chain() { return chain_; }
 
  private:
   double timed_for(std::size_t count, const std::function<void(std::size_t)>& work) const;
   void view_positions(std::size_t first, std::size_t last);
-  Keyframe viewed(std::size_t position_index) const;
+  Keyframe viewed(std::size_t scan_index) const;
   void take(Keyframe scan);
   void link_keyframes(std::size_t first_new);
   void expect(const ExpectedPose& expected, std::size_t link);
   void expect_the_usual();
-  void expect_the_usual(const MotionHabit& habit, std::size_t link);
-  std::vector<PoseHypothesis> aligned(std::size_t reference, std::size_t query, SearchKind search,
-                                      const HypothesisSearchOptions& options) const;
-  std::vector<PoseHypothesis> borrow_hypotheses(std::size_t link) const;
-  bool in_doubt(const std::vector<PoseHypothesis>& link) const;
-  std::vector<std::vector<double>> companion_scores(std::size_t link) const;
+  void expect_the_usual(const MotionPrior& prior, std::size_t link);
+  std::vector<MatchCandidate> aligned(std::size_t reference, std::size_t query, SearchKind search,
+                                      const MatchSearchOptions& options) const;
+  std::vector<MatchCandidate> multi_reference_candidates(std::size_t link) const;
+  bool in_doubt(const std::vector<MatchCandidate>& link) const;
+  std::vector<std::vector<double>> three_scan_scores(std::size_t link) const;
   void let_views_go();
 
   bool starts_session(std::size_t link) const;
-  std::vector<PoseHypothesis>& hypotheses(std::size_t link) { return chain_.links[link].hypotheses; }
-  const std::vector<PoseHypothesis>& hypotheses(std::size_t link) const { return chain_.links[link].hypotheses; }
+  std::vector<MatchCandidate>& candidates(std::size_t link) { return chain_.edges[link].candidates; }
+  const std::vector<MatchCandidate>& candidates(std::size_t link) const { return chain_.edges[link].candidates; }
   const ScanView& view_of_keyframe(std::size_t i) const { return *chain_.keyframes[i].view; }
-  std::size_t position_of(std::size_t keyframe) const { return chain_.keyframes[keyframe].position_index; }
+  std::size_t position_of(std::size_t keyframe) const { return chain_.keyframes[keyframe].scan_index; }
 
   const Log& log_;
   const MappingOptions& options_;
   RunObserver& observer_;
   TraceSink* sink_;
-  AlignmentStore* store_;
+  MatchCache* store_;
   MapResult& result_;
-  KeyframeTracker tracker_;
+  ScanTracker tracker_;
   std::size_t next_ = 0;       ///< the first position that was not looked at
   std::size_t last_seen_ = 0;  ///< the last position with shape
-  KeyframeChain chain_;
+  KeyframeGraph chain_;
 };
 
 }  // namespace shapemap

@@ -15,19 +15,19 @@ namespace {
 /// What a settled map says of two of its keyframes, as logarithm of odds.
 constexpr double kSettledLogOdds = 4.6;
 
-Pose2 between(const KeyframeMap& map, std::size_t a, std::size_t b) {
+Pose2 between(const OptimizedMap& map, std::size_t a, std::size_t b) {
   return inverse(map.map_from_keyframe[a]) * map.map_from_keyframe[b];
 }
 
 /// What becomes of a chain when keyframes are taken out of it.
-class Retirement {
+class KeyframeCulling {
  public:
-  Retirement(const std::vector<std::optional<StandIn>>& stand_ins, const MappingOptions& options, KeyframeMap& map,
-             KeyframeChain& chain, LoopKnowledge& known)
-      : stand_ins_(stand_ins), options_(options), map_(map), chain_(chain), known_(known), number_(stand_ins.size()) {
-    for (std::size_t i = 0; i < stand_ins.size(); ++i) {
+  KeyframeCulling(const std::vector<std::optional<ReplacementKeyframe>>& redundant, const MappingOptions& options,
+                  OptimizedMap& map, KeyframeGraph& chain, LoopCandidates& known)
+      : stand_ins_(redundant), options_(options), map_(map), chain_(chain), known_(known), number_(redundant.size()) {
+    for (std::size_t i = 0; i < redundant.size(); ++i) {
       number_[i] = kept_.size();
-      if (!stand_ins[i]) kept_.push_back(i);
+      if (!redundant[i]) kept_.push_back(i);
     }
   }
 
@@ -46,15 +46,15 @@ class Retirement {
 
   /// Hypotheses of keyframes that are kept stay; what the map knows of others is said of those that stand for them.
   void renew_loops() {
-    std::vector<LoopHypothesis> hypotheses;
+    std::vector<LoopCandidate> candidates;
     std::set<std::pair<std::size_t, std::size_t>> pairs;
-    for (const LoopHypothesis& loop : known_.hypotheses) {
+    for (const LoopCandidate& loop : known_.candidates) {
       if (!is_kept(loop.a) || !is_kept(loop.b)) continue;
-      hypotheses.push_back(loop);
-      hypotheses.back().a = number_[loop.a];
-      hypotheses.back().b = number_[loop.b];
+      candidates.push_back(loop);
+      candidates.back().a = number_[loop.a];
+      candidates.back().b = number_[loop.b];
       if (is_within(inverse(loop.a_from_b) * between(map_, loop.a, loop.b), kAsInMap_m, kAsInMap_rad)) {
-        pairs.insert({hypotheses.back().a, hypotheses.back().b});
+        pairs.insert({candidates.back().a, candidates.back().b});
       }
     }
     for (const PoseConstraint& constraint : map_.constraints) {
@@ -63,9 +63,9 @@ class Retirement {
       const auto [a, b] = std::minmax({kept_for(constraint.a), kept_for(constraint.b)});
       if (number_[b] - number_[a] < static_cast<std::size_t>(options_.robust.loop_detection.shortest_loop)) continue;
       if (!pairs.insert({number_[a], number_[b]}).second) continue;
-      hypotheses.push_back({number_[a], number_[b], between(map_, a, b), constraint.covariance, kSettledLogOdds});
+      candidates.push_back({number_[a], number_[b], between(map_, a, b), constraint.covariance, kSettledLogOdds});
     }
-    known_.hypotheses = std::move(hypotheses);
+    known_.candidates = std::move(candidates);
     known_.num_searched = number_of_kept_before(known_.num_searched);
     known_.num_bridged = number_of_kept_before(known_.num_bridged);
   }
@@ -76,48 +76,48 @@ class Retirement {
 
   void attach_scans() {
     for (AttachedScan& scan : chain_.attached) {
-      const auto& stand_in = stand_ins_[scan.keyframe];
-      if (stand_in) scan.pose.ref_from_query = stand_in->pose.ref_from_query * scan.pose.ref_from_query;
+      const auto& replacement = stand_ins_[scan.keyframe];
+      if (replacement) scan.pose.ref_from_query = replacement->pose.ref_from_query * scan.pose.ref_from_query;
       scan.keyframe = number_[kept_for(scan.keyframe)];
     }
     for (std::size_t i = 0; i < stand_ins_.size(); ++i) {
       if (is_kept(i)) continue;
-      const StandIn& stand_in = *stand_ins_[i];
-      chain_.attached.push_back({chain_.keyframes[i].position_index, number_[stand_in.keyframe], stand_in.pose});
+      const ReplacementKeyframe& replacement = *stand_ins_[i];
+      chain_.attached.push_back({chain_.keyframes[i].scan_index, number_[replacement.keyframe], replacement.pose});
     }
   }
 
   void renew_chain() {
-    const PathCovariance covariance(map_.map_from_keyframe, map_.constraints);
-    KeyframeChain renewed;
+    const RelativeCovariance covariance(map_.map_from_keyframe, map_.constraints);
+    KeyframeGraph renewed;
     renewed.attached = std::move(chain_.attached);
     for (std::size_t k = 0; k < kept_.size(); ++k) {
       renewed.keyframes.push_back(std::move(chain_.keyframes[kept_[k]]));
       if (k == 0) continue;
       const std::size_t before = kept_[k - 1];
       const bool are_neighbours = before + 1 == kept_[k];
-      renewed.links.push_back(are_neighbours ? std::move(chain_.links[before])
+      renewed.edges.push_back(are_neighbours ? std::move(chain_.edges[before])
                                              : settled_link(before, kept_[k], covariance));
     }
-    for (std::size_t i = 0; i + 1 < renewed.links.size(); ++i) {
-      KeyframeLink& link = renewed.links[i];
-      if (kept_[i + 2] != kept_[i] + 2) link.bonus = no_bonus(link, renewed.links[i + 1]);
+    for (std::size_t i = 0; i + 1 < renewed.edges.size(); ++i) {
+      OdometryEdge& link = renewed.edges[i];
+      if (kept_[i + 2] != kept_[i] + 2) link.transition_scores = no_transition_scores(link, renewed.edges[i + 1]);
     }
     chain_ = std::move(renewed);
-    choose_hypotheses(chain_);
+    choose_candidates(chain_);
   }
 
-  KeyframeLink settled_link(std::size_t a, std::size_t b, const PathCovariance& covariance) const {
-    KeyframeLink link;
-    PoseHypothesis pose;
+  OdometryEdge settled_link(std::size_t a, std::size_t b, const RelativeCovariance& covariance) const {
+    OdometryEdge link;
+    MatchCandidate pose;
     pose.ref_from_query = between(map_, a, b);
-    link.hypotheses = {pose};
-    link.settled_covariance = covariance.between(a, b);
+    link.candidates = {pose};
+    link.culled_covariance = covariance.between(a, b);
     return link;
   }
 
   void renew_map() {
-    KeyframeMap renewed;
+    OptimizedMap renewed;
     renewed.constraints = renewed_constraints();
     for (std::size_t k = 0; k < kept_.size(); ++k) {
       renewed.map_from_keyframe.push_back(map_.map_from_keyframe[kept_[k]]);
@@ -125,9 +125,9 @@ class Retirement {
       if (k == 0) continue;
       const std::size_t before = kept_[k - 1];
       const bool are_neighbours = before + 1 == kept_[k];
-      renewed.link_choice.push_back(are_neighbours ? map_.link_choice[before] : 0);
-      renewed.held_by_loops.push_back(!are_neighbours || map_.held_by_loops[before]);
-      if (!are_neighbours) renewed.constraints.push_back(link_constraint(chain_, k - 1, 0));
+      renewed.edge_choice.push_back(are_neighbours ? map_.edge_choice[before] : 0);
+      renewed.loop_constrained.push_back(!are_neighbours || map_.loop_constrained[before]);
+      if (!are_neighbours) renewed.constraints.push_back(edge_constraint(chain_, k - 1, 0));
     }
     renewed.loops = std::move(map_.loops);
     map_ = std::move(renewed);
@@ -154,20 +154,20 @@ class Retirement {
     return constraints;
   }
 
-  const std::vector<std::optional<StandIn>>& stand_ins_;
+  const std::vector<std::optional<ReplacementKeyframe>>& stand_ins_;
   const MappingOptions& options_;
-  KeyframeMap& map_;
-  KeyframeChain& chain_;
-  LoopKnowledge& known_;
+  OptimizedMap& map_;
+  KeyframeGraph& chain_;
+  LoopCandidates& known_;
   std::vector<std::size_t> kept_;    ///< the keyframes that stay
   std::vector<std::size_t> number_;  ///< per keyframe: how many before it stay
 };
 
 }  // namespace
 
-void retire_keyframes(const std::vector<std::optional<StandIn>>& stand_ins, const MappingOptions& options,
-                      KeyframeMap& map, KeyframeChain& chain, LoopKnowledge& known) {
-  Retirement(stand_ins, options, map, chain, known).run();
+void cull_keyframes(const std::vector<std::optional<ReplacementKeyframe>>& redundant, const MappingOptions& options,
+                    OptimizedMap& map, KeyframeGraph& chain, LoopCandidates& known) {
+  KeyframeCulling(redundant, options, map, chain, known).run();
 }
 
 }  // namespace shapemap

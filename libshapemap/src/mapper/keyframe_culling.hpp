@@ -12,7 +12,7 @@ namespace shapemap {
 
 /// Takes the keyframes that others can stand for out of the chain. Their scans are attached to those, the links around
 /// them become what `map` says, and so do the loops in `known`. `map` loses them as well.
-void retire_keyframes(const std::vector<std::optional<StandIn>>& stand_ins, const MappingOptions& options,
-                      KeyframeMap& map, KeyframeChain& chain, LoopKnowledge& known);
+void cull_keyframes(const std::vector<std::optional<ReplacementKeyframe>>& redundant, const MappingOptions& options,
+                    OptimizedMap& map, KeyframeGraph& chain, LoopCandidates& known);
 
 }  // namespace shapemap

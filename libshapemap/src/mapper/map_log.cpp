@@ -14,28 +14,28 @@ namespace shapemap {
 namespace {
 
 /// The first of the fragments with most positions.
-int largest(const std::vector<Fragment>& fragments) {
-  const auto fewer = [](const Fragment& a, const Fragment& b) { return a.positions.size() < b.positions.size(); };
-  const auto found = std::max_element(fragments.begin(), fragments.end(), fewer);
-  return found == fragments.end() ? -1 : static_cast<int>(found - fragments.begin());
+int largest(const std::vector<Component>& components) {
+  const auto fewer = [](const Component& a, const Component& b) { return a.scans.size() < b.scans.size(); };
+  const auto found = std::max_element(components.begin(), components.end(), fewer);
+  return found == components.end() ? -1 : static_cast<int>(found - components.begin());
 }
 
 }  // namespace
 
-const std::vector<PlacedPosition>& MapResult::placed() const {
-  static const std::vector<PlacedPosition> none;
-  return largest_fragment < 0 ? none : fragments[static_cast<std::size_t>(largest_fragment)].positions;
+const std::vector<PlacedScan>& MapResult::placed() const {
+  static const std::vector<PlacedScan> none;
+  return largest_component < 0 ? none : components[static_cast<std::size_t>(largest_component)].scans;
 }
 
-std::string MapResult::why_not_in_map(const PositionResult& position) const {
-  if (position.fragment < 0) return position.reason;
-  if (position.fragment == largest_fragment) return "";
-  return position.reason + (position.reason.empty() ? "" : "; ") + "in fragment " + std::to_string(position.fragment) +
+std::string MapResult::why_not_in_map(const ScanResult& position) const {
+  if (position.component < 0) return position.reason;
+  if (position.component == largest_component) return "";
+  return position.reason + (position.reason.empty() ? "" : "; ") + "in fragment " + std::to_string(position.component) +
          ", which nothing ties to the map";
 }
 
 MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
-                  AlignmentStore* store) {
+                  MatchCache* store) {
   validate_all(options);
   require_plausible(log);
   MapResult result;
@@ -49,9 +49,9 @@ MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& ob
     result.interrupted = true;
   }
   const auto start = std::chrono::steady_clock::now();
-  judge_scans(log, options.returns, options.agreement, result.fragments);
-  result.times.agreement_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  result.largest_fragment = largest(result.fragments);
+  judge_consistency(log, options.returns, options.consistency, result.components);
+  result.times.consistency_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.largest_component = largest(result.components);
   if (const TurnComparison turns = compare_turns(log, result.placed()); turns.is_mirrored()) {
     observer.on_warning("the scans seem to be mirrored: of the turns that the log itself records, " +
                         std::to_string(turns.num_opposite) + " of " +

@@ -21,7 +21,7 @@ namespace shapemap {
 namespace {
 
 /// Of a pose in the frame of the map.
-Eigen::Matrix3d covariance_in_map(const Alignment& alignment, const Pose2& map_from_robot) {
+Eigen::Matrix3d covariance_in_map(const ScanMatch& alignment, const Pose2& map_from_robot) {
   Eigen::Matrix3d map_from_reference = Eigen::Matrix3d::Identity();
   const double heading_rad = map_from_robot.theta_rad - alignment.ref_from_query.theta_rad;
   map_from_reference.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(heading_rad).toRotationMatrix();
@@ -31,79 +31,79 @@ Eigen::Matrix3d covariance_in_map(const Alignment& alignment, const Pose2& map_f
 /// Gives each position of the log its place in `result`.
 class Placing {
  public:
-  Placing(const Log& log, const KeyframeChain& chain, const KeyframeMap& map, const SubScanCorrections& sub_scans,
+  Placing(const Log& log, const KeyframeGraph& chain, const OptimizedMap& map, const SweepCorrections& sweeps,
           const MappingOptions& options, TraceSink* sink, MapResult& result)
-      : log_(log), chain_(chain), map_(map), sub_scans_(sub_scans), options_(options), sink_(sink), result_(result) {}
+      : log_(log), chain_(chain), map_(map), sub_scans_(sweeps), options_(options), sink_(sink), result_(result) {}
 
   void run() {
     for (std::size_t i = 0; i < chain_.keyframes.size(); ++i) place_keyframe(i);
     for (const AttachedScan& scan : chain_.attached) place_attached(scan);
-    for (Fragment& fragment : result_.fragments) {
-      std::sort(fragment.positions.begin(), fragment.positions.end(),
-                [](const PlacedPosition& a, const PlacedPosition& b) { return a.position_index < b.position_index; });
-      smooth(fragment);
-      const Pose2 first_from_map = inverse(fragment.positions.front().map_from_robot);
-      for (PlacedPosition& placed : fragment.positions) placed.map_from_robot = first_from_map * placed.map_from_robot;
+    for (Component& component : result_.components) {
+      std::sort(component.scans.begin(), component.scans.end(),
+                [](const PlacedScan& a, const PlacedScan& b) { return a.scan_index < b.scan_index; });
+      smooth(component);
+      const Pose2 first_from_map = inverse(component.scans.front().map_from_robot);
+      for (PlacedScan& placed : component.scans) placed.map_from_robot = first_from_map * placed.map_from_robot;
     }
   }
 
  private:
   void place_keyframe(std::size_t i) {
-    PositionResult& outcome = result_.positions[chain_.keyframes[i].position_index];
-    if (i > 0 && !chain_.links[i - 1].settled_covariance) {
-      judge_link(chain_, map_, i - 1, options_.robust.matcher.confidence, sink_, outcome);
+    ScanResult& outcome = result_.scans[chain_.keyframes[i].scan_index];
+    if (i > 0 && !chain_.edges[i - 1].culled_covariance) {
+      judge_edge(chain_, map_, i - 1, options_.robust.matcher.confidence, sink_, outcome);
     }
-    outcome.fragment = fragment_of(i);
-    outcome.starts_fragment = i == 0 || map_.component[i] != map_.component[i - 1];
-    PlacedPosition& placed = add(outcome, map_.map_from_keyframe[i]);
-    if (!sub_scans_.empty()) placed.robot_from_sub_scan = sub_scans_[i];
+    outcome.component = fragment_of(i);
+    outcome.starts_component = i == 0 || map_.component[i] != map_.component[i - 1];
+    PlacedScan& placed = add(outcome, map_.map_from_keyframe[i]);
+    if (!sub_scans_.empty()) placed.robot_from_sweep = sub_scans_[i];
   }
 
   void place_attached(const AttachedScan& scan) {
-    PositionResult& outcome = result_.positions[scan.position_index];
+    ScanResult& outcome = result_.scans[scan.scan_index];
     outcome.alignment = judged({scan.pose}, 0, kFullMargin, options_.robust.matcher.confidence);
-    outcome.reference = chain_.keyframes[scan.keyframe].position_index;
+    outcome.reference = chain_.keyframes[scan.keyframe].scan_index;
     outcome.is_keyframe = false;
-    outcome.fragment = fragment_of(scan.keyframe);
+    outcome.component = fragment_of(scan.keyframe);
     add(outcome, map_.map_from_keyframe[scan.keyframe] * scan.pose.ref_from_query);
   }
 
   /// Fragments are numbered in the order of the log.
   int fragment_of(std::size_t keyframe) {
     const auto [found, is_new] =
-        fragment_of_component_.try_emplace(map_.component[keyframe], static_cast<int>(result_.fragments.size()));
-    if (is_new) result_.fragments.emplace_back();
+        fragment_of_component_.try_emplace(map_.component[keyframe], static_cast<int>(result_.components.size()));
+    if (is_new) result_.components.emplace_back();
     return found->second;
   }
 
   /// Scans that keyframes stand for are placed one by one: their motion is smoothed.
-  void smooth(Fragment& fragment) const {
+  void smooth(Component& component) const {
     std::vector<TrackedPose> poses;
-    for (const PlacedPosition& placed : fragment.positions) {
-      const PositionResult& outcome = result_.positions[placed.position_index];
-      TrackedPose pose{placed.position_index, outcome.session, placed.map_from_robot, {}};
+    for (const PlacedScan& placed : component.scans) {
+      const ScanResult& outcome = result_.scans[placed.scan_index];
+      TrackedPose pose{placed.scan_index, outcome.session, placed.map_from_robot, {}};
       if (!outcome.is_keyframe) pose.covariance = covariance_in_map(outcome.alignment, placed.map_from_robot);
       poses.push_back(pose);
     }
     smooth_trajectory(poses);
-    for (std::size_t i = 0; i < poses.size(); ++i) fragment.positions[i].map_from_robot = poses[i].map_from_robot;
+    for (std::size_t i = 0; i < poses.size(); ++i) component.scans[i].map_from_robot = poses[i].map_from_robot;
   }
 
-  PlacedPosition& add(const PositionResult& outcome, const Pose2& map_from_robot) {
-    PlacedPosition placed;
-    placed.position_index = outcome.position_index;
+  PlacedScan& add(const ScanResult& outcome, const Pose2& map_from_robot) {
+    PlacedScan placed;
+    placed.scan_index = outcome.scan_index;
     placed.timestamp_s = outcome.timestamp_s;
     placed.map_from_robot = map_from_robot;
-    placed.robot_from_sub_scan.resize(log_.positions[placed.position_index].sub_scans.size());
-    std::vector<PlacedPosition>& positions = result_.fragments[static_cast<std::size_t>(outcome.fragment)].positions;
-    positions.push_back(std::move(placed));
-    return positions.back();
+    placed.robot_from_sweep.resize(log_.scans[placed.scan_index].sweeps.size());
+    std::vector<PlacedScan>& scans = result_.components[static_cast<std::size_t>(outcome.component)].scans;
+    scans.push_back(std::move(placed));
+    return scans.back();
   }
 
   const Log& log_;
-  const KeyframeChain& chain_;
-  const KeyframeMap& map_;
-  const SubScanCorrections& sub_scans_;
+  const KeyframeGraph& chain_;
+  const OptimizedMap& map_;
+  const SweepCorrections& sub_scans_;
   const MappingOptions& options_;
   TraceSink* sink_;
   MapResult& result_;
@@ -129,7 +129,7 @@ constexpr std::size_t kFollowedAtOnce = 64;
 /// those of places that are known again go soon; all is solved anew when there are many more.
 class Reading {
  public:
-  Reading(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink, AlignmentStore* store,
+  Reading(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink, MatchCache* store,
           MapResult& result)
       : options_(options),
         observer_(observer),
@@ -137,7 +137,7 @@ class Reading {
         store_(store),
         result_(result),
         growth_(log, options, observer, sink, store, result),
-        revisits_(options.robust) {}
+        revisit_tracker_(options.robust) {}
 
   void run() {
     const auto settle_at = std::max(static_cast<std::size_t>(options_.robust.keyframes.settle_at), 4 * kKeyframesInUse);
@@ -160,8 +160,8 @@ class Reading {
     }
   }
 
-  KeyframeChain& chain() { return growth_.chain(); }
-  LoopKnowledge& known() { return known_; }
+  KeyframeGraph& chain() { return growth_.chain(); }
+  LoopCandidates& known() { return known_; }
 
  private:
   Execution execution() const { return {options_.run.threads, observer_}; }
@@ -174,68 +174,68 @@ class Reading {
   bool settle() {
     find_loops(chain(), chain().keyframes.size() - kKeyframesInUse, loop_search(), known_);
     if (!observer_.keep_going()) return false;
-    KeyframeMap map = map_with_loops(chain(), known_.hypotheses, Improbable::kIsCut, options_.robust, execution());
+    OptimizedMap map = optimized_map(chain(), known_.candidates, Improbable::kIsCut, options_.robust, execution());
     if (!observer_.keep_going()) return false;
-    const StandIns stand_ins = find_stand_ins(chain(), map, options_.robust, options_.run.threads);
-    if (!stand_ins.are_of_right_map()) return false;
+    const RedundantKeyframes redundant = find_redundant_keyframes(chain(), map, options_.robust, options_.run.threads);
+    if (!redundant.are_of_right_map()) return false;
     for (std::size_t b = 0; b < map.component.size(); ++b) {
-      if (stand_ins.is_in_doubt[b]) map.component[b] = b;  // the robot is not to be followed there
+      if (redundant.is_in_doubt[b]) map.component[b] = b;  // the robot is not to be followed there
     }
-    retire(stand_ins.of_keyframe, map);
-    revisits_.start(chain(), map, chain().keyframes.size() - kKeyframesInUse);
+    retire(redundant.of_keyframe, map);
+    revisit_tracker_.start(chain(), map, chain().keyframes.size() - kKeyframesInUse);
     return true;
   }
 
   void follow() {
-    if (revisits_.is_lost()) {
+    if (revisit_tracker_.is_lost()) {
       find_loops(chain(), chain().keyframes.size() - kKeyframesInUse, loop_search(), known_);
       if (!observer_.keep_going()) return;
     }
-    Revisits::Followed followed = revisits_.follow(chain(), known_.hypotheses);
+    RevisitTracker::Followed followed = revisit_tracker_.follow(chain(), known_.candidates);
     const std::size_t num_open = chain().keyframes.size() - followed.num_followed;
-    retire(followed.stand_ins, followed.map);
-    revisits_.renew(std::move(followed.map), num_open);
+    retire(followed.redundant, followed.map);
+    revisit_tracker_.renew(std::move(followed.map), num_open);
   }
 
-  void retire(const std::vector<std::optional<StandIn>>& stand_ins, KeyframeMap& map) {
-    for (std::size_t i = 0; i < chain().links.size(); ++i) {
-      const bool stays = !stand_ins[i] && !stand_ins[i + 1];
-      if (!stays && !chain().links[i].settled_covariance) judge(map, i);
+  void retire(const std::vector<std::optional<ReplacementKeyframe>>& redundant, OptimizedMap& map) {
+    for (std::size_t i = 0; i < chain().edges.size(); ++i) {
+      const bool stays = !redundant[i] && !redundant[i + 1];
+      if (!stays && !chain().edges[i].culled_covariance) judge(map, i);
     }
-    retire_keyframes(stand_ins, options_, map, chain(), known_);
+    cull_keyframes(redundant, options_, map, chain(), known_);
   }
 
   /// A link that goes has its verdict now.
-  void judge(const KeyframeMap& map, std::size_t link) {
-    PositionResult& outcome = result_.positions[chain().keyframes[link + 1].position_index];
-    judge_link(chain(), map, link, options_.robust.matcher.confidence, sink_, outcome);
+  void judge(const OptimizedMap& map, std::size_t link) {
+    ScanResult& outcome = result_.scans[chain().keyframes[link + 1].scan_index];
+    judge_edge(chain(), map, link, options_.robust.matcher.confidence, sink_, outcome);
   }
 
   const MappingOptions& options_;
   RunObserver& observer_;
   TraceSink* sink_;
-  AlignmentStore* store_;
+  MatchCache* store_;
   MapResult& result_;
   FrontEnd growth_;
-  Revisits revisits_;
+  RevisitTracker revisit_tracker_;
   bool has_settled_ = false;
-  LoopKnowledge known_;
+  LoopCandidates known_;
 };
 
-void trace_revised(const KeyframeChain& chain, TraceSink& sink) {
-  for (std::size_t i = 0; i < chain.links.size(); ++i) {
-    const KeyframeLink& link = chain.links[i];
-    if (!link.revised) continue;
-    sink.on_revision({chain.keyframes[i].position_index, chain.keyframes[i + 1].position_index, link.hypotheses,
-                      link.revised->said_by_others, link.revised->vouched, link.revised->in_map,
-                      link.revised->hypothesis, link.revised->probability});
+void trace_revised(const KeyframeGraph& chain, TraceSink& sink) {
+  for (std::size_t i = 0; i < chain.edges.size(); ++i) {
+    const OdometryEdge& link = chain.edges[i];
+    if (!link.verified) continue;
+    sink.on_revision({chain.keyframes[i].scan_index, chain.keyframes[i + 1].scan_index, link.candidates,
+                      link.verified->support_by_others, link.verified->parallel_support, link.verified->in_map,
+                      link.verified->candidate, link.verified->probability});
   }
 }
 
 }  // namespace
 
 void map_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
-                  AlignmentStore* store, MapResult& result) {
+                  MatchCache* store, MapResult& result) {
   Reading reading(log, options, observer, sink, store, result);
   reading.run();
   const auto start = std::chrono::steady_clock::now();
@@ -244,28 +244,27 @@ void map_robustly(const Log& log, const MappingOptions& options, RunObserver& ob
 
   const auto execution = [&](RunObserver& asked) { return Execution{options.run.threads, asked}; };
 
-  KeyframeChain& chain = reading.chain();
-  KeyframeMap map;
+  KeyframeGraph& chain = reading.chain();
+  OptimizedMap map;
   if (options.robust.loops.close_loops) {
     find_loops(chain, chain.keyframes.size(),
                {options.robust.matcher.search, options.robust.loop_detection, execution(unless_interrupted()), store},
                reading.known());
     const Improbable improbable =
         options.robust.edge_verification.doubt_below > 0.0 ? Improbable::kStays : Improbable::kIsCut;
-    map =
-        map_with_loops(chain, reading.known().hypotheses, improbable, options.robust, execution(unless_interrupted()));
+    map = optimized_map(chain, reading.known().candidates, improbable, options.robust, execution(unless_interrupted()));
   } else {
-    map = map_of_chain(chain, options.robust);
+    map = map_of_odometry(chain, options.robust);
   }
   const Execution rest = execution(unless_interrupted());
-  SubScanCorrections sub_scans = refine_sub_scans_of_map(chain, options.robust, rest, map);
-  if (options.robust.loops.close_loops && revise_doubtful_links(options.robust, rest, store, chain, map)) {
-    sub_scans = refine_sub_scans_of_map(chain, options.robust, rest, map);
+  SweepCorrections sweeps = refine_sweeps_of_map(chain, options.robust, rest, map);
+  if (options.robust.loops.close_loops && verify_doubtful_edges(options.robust, rest, store, chain, map)) {
+    sweeps = refine_sweeps_of_map(chain, options.robust, rest, map);
   }
   result.times.loops_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.loops = std::move(map.loops);
   if (sink) trace_revised(chain, *sink);
-  Placing(log, chain, map, sub_scans, options, sink, result).run();
+  Placing(log, chain, map, sweeps, options, sink, result).run();
   if (!observer.keep_going()) throw Interrupted();
 }
 

@@ -20,13 +20,13 @@ constexpr std::size_t kBlock = 32;
 /// The views of a log's positions, from the first pair that needs one to the last.
 class Views {
  public:
-  explicit Views(const Log& log) : log_(log), views_(log.positions.size()), last_use_(log.positions.size(), 0) {}
+  explicit Views(const Log& log) : log_(log), views_(log.scans.size()), last_use_(log.scans.size(), 0) {}
 
   /// `use` grows from call to call.
   void note_use(std::size_t index, std::size_t use) {
-    if (index >= log_.positions.size()) {
+    if (index >= log_.scans.size()) {
       throw ConfigError("there is no position " + std::to_string(index) + " in a log of " +
-                        std::to_string(log_.positions.size()));
+                        std::to_string(log_.scans.size()));
     }
     last_use_[index] = use;
   }
@@ -37,7 +37,7 @@ class Views {
     parallel_for(wanted.size(), options.run.threads, [&](std::size_t i) {
       std::unique_ptr<const ScanView>& view = views_[wanted[i]];
       if (view) return;
-      view = std::make_unique<ScanView>(view_of(log_.positions[wanted[i]], options.returns, options.polylines,
+      view = std::make_unique<ScanView>(view_of(log_.scans[wanted[i]], options.returns, options.polylines,
                                                 options.shape, options.robust.matcher.view));
     });
   }
@@ -55,15 +55,15 @@ class Views {
   std::vector<std::size_t> last_use_;
 };
 
-bool has_shape(const ScanView& view, const char* which, const MappingOptions& options, Alignment& alignment) {
+bool has_shape(const ScanView& view, const char* which, const MappingOptions& options, ScanMatch& alignment) {
   if (view.size() >= static_cast<std::size_t>(options.shape.min_points)) return true;
-  alignment.status = AlignStatus::kNoShape;
+  alignment.status = MatchStatus::kNoShape;
   alignment.reason = std::string("the ") + which + " has only " + std::to_string(view.size()) + " shape points, " +
                      std::to_string(options.shape.min_points) + " are needed";
   return false;
 }
 
-AlignedPair align_pair(const PositionPair& pair, const ScanView& reference, const ScanView& query,
+AlignedPair align_pair(const ScanPair& pair, const ScanView& reference, const ScanView& query,
                        const MappingOptions& options) {
   using Clock = std::chrono::steady_clock;
   AlignedPair result;
@@ -71,24 +71,24 @@ AlignedPair align_pair(const PositionPair& pair, const ScanView& reference, cons
   if (!has_shape(reference, "reference", options, result.alignment)) return result;
   if (!has_shape(query, "query", options, result.alignment)) return result;
   const auto start = Clock::now();
-  result.alignment = robust_align(reference, query, options.robust.matcher);
+  result.alignment = match_scans(reference, query, options.robust.matcher);
   result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (const auto& given = pair.given_ref_from_query) {
-    result.given = ranked_pose(hypothesis_at(reference, query, *given, options.robust.matcher.search));
-    result.refined = ranked_pose(refined_hypothesis(reference, query, *given, options.robust.matcher.search));
+    result.given = ranked_pose(candidate_at(reference, query, *given, options.robust.matcher.search));
+    result.refined = ranked_pose(refined_candidate(reference, query, *given, options.robust.matcher.search));
   }
   return result;
 }
 
 }  // namespace
 
-std::vector<PositionPair> pairs_with_gap(std::size_t num_positions, std::size_t gap) {
-  std::vector<PositionPair> pairs;
-  for (std::size_t i = 0; gap < num_positions && i < num_positions - gap; ++i) pairs.push_back({i, i + gap, {}});
+std::vector<ScanPair> pairs_with_gap(std::size_t num_scans, std::size_t gap) {
+  std::vector<ScanPair> pairs;
+  for (std::size_t i = 0; gap < num_scans && i < num_scans - gap; ++i) pairs.push_back({i, i + gap, {}});
   return pairs;
 }
 
-std::vector<AlignedPair> align_pairs(const Log& references, const Log& queries, const std::vector<PositionPair>& pairs,
+std::vector<AlignedPair> align_pairs(const Log& references, const Log& queries, const std::vector<ScanPair>& pairs,
                                      const MappingOptions& options, RunObserver& observer) {
   validate_all(options);
   require_plausible(references);
@@ -118,7 +118,7 @@ std::vector<AlignedPair> align_pairs(const Log& references, const Log& queries, 
     of_references.make(std::move(wanted_references), options);
     of_queries.make(std::move(wanted_queries), options);
     parallel_for(last - first, options.run.threads, [&](std::size_t k) {
-      const PositionPair& pair = pairs[first + k];
+      const ScanPair& pair = pairs[first + k];
       results[first + k] = align_pair(pair, of_references[pair.reference], of_queries[pair.query], options);
     });
     for (std::size_t i = first; i < last; ++i) {

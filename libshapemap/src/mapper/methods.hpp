@@ -18,6 +18,6 @@ void chain_by_paper(const Log& log, const MappingOptions& options, RunObserver& 
 
 /// The robust one: a chain of keyframes, in which places are known again.
 void map_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
-                  AlignmentStore* store, MapResult& result);
+                  MatchCache* store, MapResult& result);
 
 }  // namespace shapemap

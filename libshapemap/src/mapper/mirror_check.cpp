@@ -32,17 +32,17 @@ bool TurnComparison::is_mirrored() const {
   return -count * divergence < kLogError;
 }
 
-TurnComparison compare_turns(const Log& log, const std::vector<PlacedPosition>& placed) {
+TurnComparison compare_turns(const Log& log, const std::vector<PlacedScan>& placed) {
   TurnComparison turns;
-  const PlacedPosition* since = nullptr;  // turns are looked at as soon as they are large enough
-  for (const PlacedPosition& here : placed) {
-    const std::optional<double>& after = log.positions[here.position_index].recorded_heading_rad;
+  const PlacedScan* since = nullptr;  // turns are looked at as soon as they are large enough
+  for (const PlacedScan& here : placed) {
+    const std::optional<double>& after = log.scans[here.scan_index].recorded_heading_rad;
     if (!after) continue;
-    if (since == nullptr || part_with(log, since->position_index) != part_with(log, here.position_index)) {
+    if (since == nullptr || part_with(log, since->scan_index) != part_with(log, here.scan_index)) {
       since = &here;
       continue;
     }
-    const double recorded_rad = wrap_angle(*after - *log.positions[since->position_index].recorded_heading_rad);
+    const double recorded_rad = wrap_angle(*after - *log.scans[since->scan_index].recorded_heading_rad);
     const double mapped_rad = wrap_angle(here.map_from_robot.theta_rad - since->map_from_robot.theta_rad);
     const double smaller_rad = std::min(std::abs(recorded_rad), std::abs(mapped_rad));
     const double larger_rad = std::max(std::abs(recorded_rad), std::abs(mapped_rad));

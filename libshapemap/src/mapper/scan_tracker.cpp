@@ -25,7 +25,7 @@ constexpr double kMemory = 0.97;
 
 }  // namespace
 
-void KeyframeTracker::start(std::shared_ptr<const ScanView> keyframe) {
+void ScanTracker::start(std::shared_ptr<const ScanView> keyframe) {
   keyframe_ = std::move(keyframe);
   if (!keyframe_) {
     forget_motion();
@@ -36,11 +36,11 @@ void KeyframeTracker::start(std::shared_ptr<const ScanView> keyframe) {
   attached_ *= kMemory;
 }
 
-std::optional<PoseHypothesis> KeyframeTracker::follow(const ScanView& view) {
+std::optional<MatchCandidate> ScanTracker::follow(const ScanView& view) {
   expected_.reset();
   if (!keyframe_ || options_.keyframes.step_m <= 0.0) return std::nullopt;
   if (attached_ > kDense) expected_ = step_ ? expectation_.at(last_ * *step_) : ExpectedPose{last_};
-  std::optional<PoseHypothesis> pose = followed(view);
+  std::optional<MatchCandidate> pose = followed(view);
   if (!pose && attached_ > kDense) pose = searched(view);
   if (!pose) {
     forget_motion();
@@ -54,26 +54,26 @@ std::optional<PoseHypothesis> KeyframeTracker::follow(const ScanView& view) {
 }
 
 /// After a jump, as where scans were lost, the motion may be any.
-void KeyframeTracker::go_on_by(const Pose2& step) {
+void ScanTracker::go_on_by(const Pose2& step) {
   if (!is_within(step, kLongestStep_m, kLargestTurn_rad)) return forget_motion();
   if (step_ && !is_within(step, kStands_m, kStands_rad)) expectation_.learn(inverse(*step_) * step);
   step_ = step;
 }
 
 /// From where the last scan was, and from where the motion goes on.
-std::optional<PoseHypothesis> KeyframeTracker::followed(const ScanView& view) const {
-  PoseHypothesis best = refined_hypothesis(*keyframe_, view, last_, options_.matcher.search);
+std::optional<MatchCandidate> ScanTracker::followed(const ScanView& view) const {
+  MatchCandidate best = refined_candidate(*keyframe_, view, last_, options_.matcher.search);
   if (step_) {
-    PoseHypothesis onward = refined_hypothesis(*keyframe_, view, last_ * *step_, options_.matcher.search);
+    MatchCandidate onward = refined_candidate(*keyframe_, view, last_ * *step_, options_.matcher.search);
     if (onward.score > best.score) best = std::move(onward);
   }
   const Pose2 step = inverse(last_) * best.ref_from_query;
-  if (!can_stand_for(best) || !is_within(step, kLongestStep_m, kLargestTurn_rad)) return std::nullopt;
+  if (!shows_the_same(best) || !is_within(step, kLongestStep_m, kLargestTurn_rad)) return std::nullopt;
   return best;
 }
 
-std::optional<PoseHypothesis> KeyframeTracker::searched(const ScanView& view) const {
-  const std::vector<PoseHypothesis> poses = pose_hypotheses(*keyframe_, view, options_.matcher.search);
+std::optional<MatchCandidate> ScanTracker::searched(const ScanView& view) const {
+  const std::vector<MatchCandidate> poses = find_candidates(*keyframe_, view, options_.matcher.search);
   if (poses.empty() || match_probability(poses.front(), lead_of_first(poses)) < kSure) return std::nullopt;
   return poses.front();
 }

@@ -12,9 +12,9 @@ namespace shapemap {
 
 /// Follows a sensor that moves little from scan to scan, as in recordings at full rate, and says which of the scans a
 /// keyframe can stand for. Any doubt makes a keyframe: those are aligned without a guess.
-class KeyframeTracker {
+class ScanTracker {
  public:
-  explicit KeyframeTracker(const RobustOptions& options) : options_(options) {}
+  explicit ScanTracker(const RobustOptions& options) : options_(options) {}
 
   /// From here on, scans are compared to `keyframe`; with none, another log starts.
   void start(std::shared_ptr<const ScanView> keyframe);
@@ -23,7 +23,7 @@ class KeyframeTracker {
   void forget_motion() { step_.reset(); }
 
   /// The pose of a scan that the keyframe can stand for, in its frame.
-  std::optional<PoseHypothesis> follow(const ScanView& view);
+  std::optional<MatchCandidate> follow(const ScanView& view);
 
   /// Where the scan last asked about was to be expected, in the frame of the keyframe then: only where scans follow
   /// each other closely.
@@ -31,14 +31,14 @@ class KeyframeTracker {
 
  private:
   void go_on_by(const Pose2& step);
-  std::optional<PoseHypothesis> followed(const ScanView& view) const;
-  std::optional<PoseHypothesis> searched(const ScanView& view) const;
+  std::optional<MatchCandidate> followed(const ScanView& view) const;
+  std::optional<MatchCandidate> searched(const ScanView& view) const;
 
   const RobustOptions& options_;
   std::shared_ptr<const ScanView> keyframe_;
   Pose2 last_;                 ///< of the scan before, in the frame of the keyframe
   std::optional<Pose2> step_;  ///< to it from the one before, where that is known
-  MotionExpectation expectation_;
+  ConstantVelocityPrior expectation_;
   std::optional<ExpectedPose> expected_;
   double attached_ = 0.0;  ///< share of the recent scans that a keyframe stood for
 };

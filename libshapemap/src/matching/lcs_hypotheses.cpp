@@ -17,13 +17,13 @@ SimilarityIndex similarity_index(const Shape& shape) {
 
 }  // namespace
 
-ShapeHypotheses::ShapeHypotheses(const ScanView& reference, const ScanView& query)
+LcsHypotheses::LcsHypotheses(const ScanView& reference, const ScanView& query)
     : reference_shape_(shape_of_view(reference)),
       query_shape_(shape_of_view(query)),
       query_directions_(query_shape_, HistogramOptions().radius_m),
       index_(similarity_index(reference_shape_)) {}
 
-std::vector<Point2> ShapeHypotheses::translations(double rotation_rad, int max_count) const {
+std::vector<Point2> LcsHypotheses::translations(double rotation_rad, int max_count) const {
   const ScanFeatures features = features_of(query_shape_, query_directions_, rotation_rad, HistogramOptions().norm);
   const std::vector<IndexPair> pairs = longest_common_subsequence(index_.matches(features));
   const Shape turned = moved(query_shape_, {0.0, 0.0, rotation_rad});

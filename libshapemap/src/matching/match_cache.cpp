@@ -5,13 +5,12 @@
 
 namespace shapemap {
 
-std::vector<PoseHypothesis> pose_hypotheses(const ScanView& reference, const ScanView& query,
-                                            const HypothesisSearchOptions& options, const AlignmentKey& key,
-                                            AlignmentStore* store) {
+std::vector<MatchCandidate> find_candidates(const ScanView& reference, const ScanView& query,
+                                            const MatchSearchOptions& options, const MatchKey& key, MatchCache* store) {
   if (store) {
-    if (std::optional<std::vector<PoseHypothesis>> known = store->find(key)) return std::move(*known);
+    if (std::optional<std::vector<MatchCandidate>> known = store->find(key)) return std::move(*known);
   }
-  std::vector<PoseHypothesis> found = pose_hypotheses(reference, query, options);
+  std::vector<MatchCandidate> found = find_candidates(reference, query, options);
   if (store) store->keep(key, found);
   return found;
 }

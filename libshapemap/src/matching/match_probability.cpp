@@ -19,15 +19,15 @@ Eigen::Vector2d variances_of_place(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-double lead_of_first(const std::vector<PoseHypothesis>& hypotheses) {
-  return hypotheses.size() > 1 ? hypotheses[0].score - hypotheses[1].score : kFullMargin;
+double lead_of_first(const std::vector<MatchCandidate>& candidates) {
+  return candidates.size() > 1 ? candidates[0].score - candidates[1].score : kFullMargin;
 }
 
 double log_odds_of(double probability) { return std::log(probability / (1.0 - probability)); }
 
 double probability_of(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); }
 
-double match_probability(const PoseHypothesis& best, double margin) {
+double match_probability(const MatchCandidate& best, double margin) {
   constexpr double kLeastMargin = 0.05;  // its logarithm stays finite
   constexpr double kLeastAgree = 0.02;
   const double agree = best.visibility.agree / std::max(best.visibility.total(), 1e-9);
@@ -39,15 +39,15 @@ double match_probability(const PoseHypothesis& best, double margin) {
   return probability_of(std::min(log_odds, lead));
 }
 
-double probability_of_neighbours(double match_probability, double view_shortfall) {
+double odometry_probability(double match_probability, double insufficient_view) {
   constexpr double kLeast = 1e-9;  // the logarithm stays finite
   const double match = log_odds_of(std::clamp(match_probability, kLeast, 1.0 - kLeast));
   // Logistic regression on links that no loop holds, of thinned logs and simulated arenas; the last weight on those of
   // hard scenes: scripts/fit_links.py.
-  return probability_of(3.0 + 0.48 * match - 12.0 * view_shortfall);
+  return probability_of(3.0 + 0.48 * match - 12.0 * insufficient_view);
 }
 
-double view_shortfall(const ScanView& a, const ScanView& b) {
+double insufficient_view(const ScanView& a, const ScanView& b) {
   constexpr double kEnough = 0.45;  // half a circle has some slack
   return std::max(0.0, kEnough - std::min(a.seen_share, b.seen_share));
 }

@@ -15,7 +15,7 @@ constexpr double kMostDeviation_m = 0.10;
 
 }  // namespace
 
-bool can_stand_for(const PoseHypothesis& pose) {
+bool shows_the_same(const MatchCandidate& pose) {
   const double total = std::max(pose.visibility.total(), 1e-9);
   return pose.visibility.agree > kLeastAgree * total && pose.visibility.crossed < kMostCrossed * total &&
          worst_deviation_m(pose_covariance(pose.fit)) < kMostDeviation_m;

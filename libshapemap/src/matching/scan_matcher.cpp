@@ -15,26 +15,26 @@ std::string text_of(const char* before, double value, const char* after) {
   return stream.str();
 }
 
-void give_verdict(Alignment& alignment, double agree, const ConfidenceOptions& options) {
+void give_verdict(ScanMatch& alignment, double agree, const ConfidenceOptions& options) {
   const double deviation_m = worst_deviation_m(alignment.covariance);
   if (agree < options.min_agree) {
-    alignment.status = AlignStatus::kTooLittleOverlap;
+    alignment.status = MatchStatus::kTooLittleOverlap;
     alignment.reason = text_of("only a share of ", agree, " of the points agrees with what the other scan saw");
     alignment.ref_from_query = kNoPose;
   } else if (alignment.probability < options.sure_probability) {
-    alignment.status = AlignStatus::kAmbiguous;
+    alignment.status = MatchStatus::kAmbiguous;
     alignment.reason = text_of("the pose is right with a probability of ", alignment.probability, " only");
   } else if (deviation_m > options.max_deviation_m) {
-    alignment.status = AlignStatus::kDegenerate;
+    alignment.status = MatchStatus::kDegenerate;
     alignment.reason = text_of("in one direction the position is known to ", deviation_m, " m only");
   } else {
-    alignment.status = AlignStatus::kOk;
+    alignment.status = MatchStatus::kOk;
   }
 }
 
 }  // namespace
 
-RankedPose ranked_pose(const PoseHypothesis& pose) {
+RankedPose ranked_pose(const MatchCandidate& pose) {
   constexpr double kNothing = 1e-9;
   const Visibility& v = pose.visibility;
   const double total = std::max(v.total(), kNothing);
@@ -52,21 +52,21 @@ RankedPose ranked_pose(const PoseHypothesis& pose) {
   return ranked;
 }
 
-Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chosen, double margin,
+ScanMatch judged(const std::vector<MatchCandidate>& candidates, std::size_t chosen, double margin,
                  const ConfidenceOptions& options, std::optional<double> probability) {
-  Alignment alignment;
-  if (hypotheses.empty()) {
-    alignment.status = AlignStatus::kNoCorrespondences;
+  ScanMatch alignment;
+  if (candidates.empty()) {
+    alignment.status = MatchStatus::kNoCorrespondences;
     alignment.reason = "no pose brings similar surfaces together";
     return alignment;
   }
-  const PoseHypothesis& best = hypotheses.at(chosen);
+  const MatchCandidate& best = candidates.at(chosen);
   alignment.ref_from_query = best.ref_from_query;
   alignment.probability = probability ? *probability : match_probability(best, margin);
   alignment.covariance = pose_covariance(best.fit);
   alignment.ranked.push_back(ranked_pose(best));
-  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-    if (i != chosen) alignment.ranked.push_back(ranked_pose(hypotheses[i]));
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (i != chosen) alignment.ranked.push_back(ranked_pose(candidates[i]));
   }
   // Those that scans further back have lent stand behind the others.
   std::stable_sort(alignment.ranked.begin() + 1, alignment.ranked.end(),
@@ -76,8 +76,8 @@ Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chos
   return alignment;
 }
 
-Alignment robust_align(const ScanView& reference, const ScanView& query, const MatcherOptions& options) {
-  const std::vector<PoseHypothesis> poses = pose_hypotheses(reference, query, options.search);
+ScanMatch match_scans(const ScanView& reference, const ScanView& query, const MatcherOptions& options) {
+  const std::vector<MatchCandidate> poses = find_candidates(reference, query, options.search);
   return judged(poses, 0, lead_of_first(poses), options.confidence);
 }
 

@@ -25,22 +25,22 @@ double surprise(const ExpectedPose& expected, const Pose2& found) {
   return std::min(kMost, 2.0 * far) + std::min(kMost, 2.0 * turned);
 }
 
-void MotionExpectation::learn(const Pose2& off) {
+void ConstantVelocityPrior::learn(const Pose2& off) {
   count(off.translation().norm() / kUsualSurprise_m, by_distance_);
   count(std::abs(off.theta_rad) / kUsualSurprise_rad, by_angle_);
   ++count_;
 }
 
-ExpectedPose MotionExpectation::at(const Pose2& pose) const {
+ExpectedPose ConstantVelocityPrior::at(const Pose2& pose) const {
   return {pose, kUsualSurprise_m * usual_share(by_distance_, count_),
           kUsualSurprise_rad * usual_share(by_angle_, count_)};
 }
 
-void MotionExpectation::count(double share_of_most, Histogram& histogram) {
+void ConstantVelocityPrior::count(double share_of_most, Histogram& histogram) {
   ++histogram[std::min(kBins - 1, static_cast<std::size_t>(share_of_most * static_cast<double>(kBins)))];
 }
 
-double MotionExpectation::usual_share(const Histogram& histogram, std::size_t count) {
+double ConstantVelocityPrior::usual_share(const Histogram& histogram, std::size_t count) {
   if (count < kEnough) return 1.0;
   std::size_t within = 0;
   std::size_t bin = 0;

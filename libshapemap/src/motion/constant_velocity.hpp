@@ -23,7 +23,7 @@ struct ExpectedPose {
 double surprise(const ExpectedPose& expected, const Pose2& found);
 
 /// Learns from the scans that were followed how near the next one usually is.
-class MotionExpectation {
+class ConstantVelocityPrior {
  public:
   /// A scan was found so far off.
   void learn(const Pose2& off);

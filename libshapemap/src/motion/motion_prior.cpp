@@ -118,7 +118,7 @@ std::vector<double> density_of_angles(const std::vector<WeightedAngle>& angles) 
 
 }  // namespace
 
-MotionHabit::MotionHabit(const std::vector<Pose2>& known_motions)
+MotionPrior::MotionPrior(const std::vector<Pose2>& known_motions)
     : share_of_unheard_(share_of_unheard(known_motions.size())), by_step_(density_of_steps(known_motions)) {
   std::vector<WeightedAngle> directions;
   std::vector<WeightedAngle> turns;
@@ -130,7 +130,7 @@ MotionHabit::MotionHabit(const std::vector<Pose2>& known_motions)
   by_turn_ = density_of_angles(turns);
 }
 
-double MotionHabit::surprise(const Pose2& a_from_b) const {
+double MotionPrior::surprise(const Pose2& a_from_b) const {
   const auto cost = [&](double density) { return -std::log(share_of_unheard_ + (1.0 - share_of_unheard_) * density); };
   return cost(by_step_[step_bin(a_from_b.translation().norm())]) + cost(by_turn_[angle_bin(a_from_b.theta_rad)]) +
          weight_of_direction(a_from_b) * cost(by_direction_[angle_bin(direction_of(a_from_b))]);

@@ -18,7 +18,7 @@ double nineteen_of_twenty(std::vector<double> values, double least) {
 
 }  // namespace
 
-UsualMotion usual_motion(const std::vector<Pose2>& steps) {
+StepStatistics step_statistics(const std::vector<Pose2>& steps) {
   std::vector<double> steps_m;
   std::vector<double> turns_rad;
   for (const Pose2& a_from_b : steps) {

@@ -8,12 +8,12 @@
 namespace shapemap {
 
 /// Nineteen of twenty steps are shorter, and turn less.
-struct UsualMotion {
+struct StepStatistics {
   double step_m;
   double turn_rad;
 };
 
 /// Of steps that are known, `a_from_b` each.
-UsualMotion usual_motion(const std::vector<Pose2>& steps);
+StepStatistics step_statistics(const std::vector<Pose2>& steps);
 
 }  // namespace shapemap

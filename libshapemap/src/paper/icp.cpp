@@ -28,11 +28,11 @@ bool is_still(const Pose2& after, const Pose2& before) {
          angle_between(after.theta_rad, before.theta_rad) < kStillTurn_rad;
 }
 
-Shape only_sub_scan(const Shape& shape, int sub_scan) {
+Shape only_sub_scan(const Shape& shape, int sweep) {
   Shape part;
-  part.num_sub_scans = 1;
+  part.num_sweeps = 1;
   std::copy_if(shape.points.begin(), shape.points.end(), std::back_inserter(part.points),
-               [&](const ShapePoint& point) { return point.sub_scan == sub_scan; });
+               [&](const ShapePoint& point) { return point.sweep == sweep; });
   return part;
 }
 
@@ -95,17 +95,17 @@ IcpResult icp(const PartialMap& target, const Shape& query, const Pose2& start, 
 std::vector<Pose2> decoupled_icp(const PartialMap& target, const Shape& query, const Pose2& target_from_query,
                                  double mean_distance_m, const IcpOptions& options,
                                  const OverlapOptions& overlap_options) {
-  std::vector<Pose2> query_from_sub_scan(static_cast<std::size_t>(query.num_sub_scans));
-  if (query.num_sub_scans < 2) return query_from_sub_scan;
-  for (int s = 0; s < query.num_sub_scans; ++s) {
+  std::vector<Pose2> query_from_sweep(static_cast<std::size_t>(query.num_sweeps));
+  if (query.num_sweeps < 2) return query_from_sweep;
+  for (int s = 0; s < query.num_sweeps; ++s) {
     const Shape part = only_sub_scan(query, s);
     const IcpResult refined = icp(target, part, target_from_query, mean_distance_m, options, overlap_options);
     const Pose2 correction = inverse(target_from_query) * refined.target_from_query;
     const bool small = correction.translation().norm() <= options.decoupled_max_shift_m &&
                        std::abs(correction.theta_rad) <= options.decoupled_max_turn_rad;
-    if (small) query_from_sub_scan[static_cast<std::size_t>(s)] = correction;
+    if (small) query_from_sweep[static_cast<std::size_t>(s)] = correction;
   }
-  return query_from_sub_scan;
+  return query_from_sweep;
 }
 
 }  // namespace shapemap

@@ -110,7 +110,7 @@ int best_rotation(const std::vector<RotationMatch>& matches) {
   return best;
 }
 
-Alignment refused(Alignment alignment, AlignStatus status, const std::string& reason) {
+ScanMatch refused(ScanMatch alignment, MatchStatus status, const std::string& reason) {
   alignment.status = status;
   alignment.reason = reason;
   alignment.ref_from_query = kNoPose;
@@ -125,19 +125,19 @@ std::string text(const Parts&... parts) {
 }
 
 /// The verdict on a finished alignment.
-Alignment judged(Alignment alignment, const TrustOptions& trust) {
+ScanMatch judged(ScanMatch alignment, const TrustOptions& trust) {
   if (alignment.num_correspondences < trust.min_correspondences) {
     const std::string reason =
         text("only ", alignment.num_correspondences, " correspondences support the best translation, ",
              trust.min_correspondences, " are needed");
-    return refused(std::move(alignment), AlignStatus::kTooFewCorrespondences, reason);
+    return refused(std::move(alignment), MatchStatus::kTooFewCorrespondences, reason);
   }
   if (alignment.overlap_ratio < trust.min_overlap_ratio) {
     const std::string reason = text("the aligned scan overlaps in ", alignment.overlap, " points, a share of ",
                                     alignment.overlap_ratio, ", ", trust.min_overlap_ratio, " is needed");
-    return refused(std::move(alignment), AlignStatus::kTooLittleOverlap, reason);
+    return refused(std::move(alignment), MatchStatus::kTooLittleOverlap, reason);
   }
-  alignment.status = AlignStatus::kOk;
+  alignment.status = MatchStatus::kOk;
   return alignment;
 }
 
@@ -167,14 +167,14 @@ std::vector<double> rotation_grid(const RotationOptions& options) {
   return rotations;
 }
 
-Alignment align(const PartialMap& target, const Shape& query, const AlignOptions& options, AlignTrace* trace) {
-  Alignment result;
+ScanMatch align(const PartialMap& target, const Shape& query, const AlignOptions& options, AlignTrace* trace) {
+  ScanMatch result;
   Stopwatch watch;
   StopCheck stop(options.keep_going);
   if (trace) *trace = {};  // of an earlier alignment
   const auto min_points = static_cast<std::size_t>(options.min_points);
   if (target.num_points() < min_points || query.size() < min_points) {
-    return refused(std::move(result), AlignStatus::kNoShape,
+    return refused(std::move(result), MatchStatus::kNoShape,
                    text("the scan has ", query.size(), " shape points and its target ", target.num_points(), ", ",
                         options.min_points, " are needed"));
   }
@@ -189,7 +189,7 @@ Alignment align(const PartialMap& target, const Shape& query, const AlignOptions
     trace->best_rotation = best;
   }
   if (best < 0) {
-    return refused(std::move(result), AlignStatus::kNoCorrespondences, "no similar structure was found");
+    return refused(std::move(result), MatchStatus::kNoCorrespondences, "no similar structure was found");
   }
   const RotationMatch& match = matches[static_cast<std::size_t>(best)];
   result.rotation_rad = match.rotation_rad;
@@ -206,17 +206,17 @@ Alignment align(const PartialMap& target, const Shape& query, const AlignOptions
   result.icp_iterations = refined.iterations;
   result.icp_s = watch.lap_s();
   stop.throw_if_stopped();
-  result.query_from_sub_scan.resize(static_cast<std::size_t>(query.num_sub_scans));
+  result.query_from_sweep.resize(static_cast<std::size_t>(query.num_sweeps));
   if (options.icp.decoupled) {
-    result.query_from_sub_scan = decoupled_icp(target, query, refined.target_from_query,
-                                               refined.overlap.mean_distance_m, options.icp, options.overlap);
+    result.query_from_sweep = decoupled_icp(target, query, refined.target_from_query, refined.overlap.mean_distance_m,
+                                            options.icp, options.overlap);
   }
   result.decoupled_icp_s = watch.lap_s();
   if (trace) trace->icp = std::move(refined);
   return judged(std::move(result), options.trust);
 }
 
-Alignment align(const Shape& reference, const Shape& query, const AlignOptions& options, AlignTrace* trace) {
+ScanMatch align(const Shape& reference, const Shape& query, const AlignOptions& options, AlignTrace* trace) {
   const bool as_one_sequence = options.lcs.target == LcsTarget::kConcatenated;
   return align(PartialMap({reference}, as_one_sequence, options.histogram.radius_m), query, options, trace);
 }

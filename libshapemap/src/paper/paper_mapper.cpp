@@ -11,7 +11,7 @@ namespace {
 
 /// A placed scan that later ones are aligned to.
 struct RecentScan {
-  PlacedPosition placed;
+  PlacedScan placed;
   TargetScan scan;  ///< in the robot's frame, with the corrections of its sub-scans
 };
 
@@ -24,61 +24,61 @@ class PaperChain {
     options_.align.min_points = options.shape.min_points;
   }
 
-  void add(std::size_t index, const Position& position, MapResult& result) {
+  void add(std::size_t index, const Scan& position, MapResult& result) {
     const auto start = std::chrono::steady_clock::now();
     const Shape shape = shape_of(position, options_.returns, options_.polylines, options_.shape);
     result.times.shape_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (sink_) sink_->on_shape(index, shape.points);
 
-    PositionResult outcome;
-    outcome.position_index = index;
+    ScanResult outcome;
+    outcome.scan_index = index;
     outcome.timestamp_s = position.timestamp_s;
     if (shape.size() < static_cast<std::size_t>(options_.shape.min_points)) {
-      outcome.alignment.status = AlignStatus::kNoShape;
+      outcome.alignment.status = MatchStatus::kNoShape;
       outcome.reason = "only " + std::to_string(shape.size()) + " shape points, " +
                        std::to_string(options_.shape.min_points) + " are needed";
       recent_.clear();
     } else {
       place(position, shape, outcome, result);
     }
-    result.positions.push_back(std::move(outcome));
+    result.scans.push_back(std::move(outcome));
   }
 
  private:
-  void place(const Position& position, const Shape& shape, PositionResult& outcome, MapResult& result) {
-    PlacedPosition placed;
-    placed.position_index = outcome.position_index;
+  void place(const Scan& position, const Shape& shape, ScanResult& outcome, MapResult& result) {
+    PlacedScan placed;
+    placed.scan_index = outcome.scan_index;
     placed.timestamp_s = position.timestamp_s;
-    placed.robot_from_sub_scan.resize(position.sub_scans.size());
-    outcome.starts_fragment = true;
+    placed.robot_from_sweep.resize(position.sweeps.size());
+    outcome.starts_component = true;
     if (!recent_.empty()) {
-      outcome.alignment = aligned(outcome.position_index, shape);
+      outcome.alignment = aligned(outcome.scan_index, shape);
       add_times(outcome.alignment, result.times);
       outcome.reason = outcome.alignment.reason;
       if (outcome.alignment.ok()) {
-        outcome.starts_fragment = false;
+        outcome.starts_component = false;
         placed.map_from_robot = recent_.back().placed.map_from_robot * outcome.alignment.ref_from_query;
-        placed.robot_from_sub_scan = outcome.alignment.query_from_sub_scan;
+        placed.robot_from_sweep = outcome.alignment.query_from_sweep;
       } else {
         recent_.clear();
       }
     }
-    if (outcome.starts_fragment) result.fragments.emplace_back();
-    outcome.fragment = static_cast<int>(result.fragments.size()) - 1;
+    if (outcome.starts_component) result.components.emplace_back();
+    outcome.component = static_cast<int>(result.components.size()) - 1;
     recent_.push_back(
-        {placed, target_scan(moved(shape, {}, placed.robot_from_sub_scan), options_.align.histogram.radius_m)});
+        {placed, target_scan(moved(shape, {}, placed.robot_from_sweep), options_.align.histogram.radius_m)});
     if (recent_.size() > static_cast<std::size_t>(options_.align.target.target_scans)) recent_.pop_front();
-    result.fragments.back().positions.push_back(std::move(placed));
+    result.components.back().scans.push_back(std::move(placed));
   }
 
-  Alignment aligned(std::size_t index, const Shape& shape) const {
+  ScanMatch aligned(std::size_t index, const Shape& shape) const {
     if (!sink_) return align(target(), shape, options_.align);
     AlignTrace steps;
-    Alignment alignment = align(target(), shape, options_.align, &steps);
+    ScanMatch alignment = align(target(), shape, options_.align, &steps);
     std::vector<TracedTarget> targets;
     for (const RecentScan& recent : recent_) {
-      targets.push_back({recent.placed.position_index, recent.scan.shape.size(), ref_from_robot(recent),
-                         recent.placed.robot_from_sub_scan});
+      targets.push_back(
+          {recent.placed.scan_index, recent.scan.shape.size(), ref_from_robot(recent), recent.placed.robot_from_sweep});
     }
     sink_->on_alignment({index, std::move(targets), alignment, steps});
     return alignment;
@@ -99,7 +99,7 @@ class PaperChain {
     return {shapes, true, options_.align.histogram.radius_m};
   }
 
-  static void add_times(const Alignment& alignment, StageTimes& times) {
+  static void add_times(const ScanMatch& alignment, StageTimes& times) {
     times.align_s += alignment.match_s;
     times.icp_s += alignment.icp_s;
     times.decoupled_icp_s += alignment.decoupled_icp_s;
@@ -116,10 +116,10 @@ void chain_by_paper(const Log& log, const MappingOptions& options, RunObserver& 
                     MapResult& result) {
   PaperChain chain(options, observer, sink);
   observer.on_stage("chain");
-  for (std::size_t i = 0; i < log.positions.size(); ++i) {
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
     if (!observer.keep_going()) throw Interrupted();
-    chain.add(i, log.positions[i], result);
-    observer.on_progress(i + 1, log.positions.size());
+    chain.add(i, log.scans[i], result);
+    observer.on_progress(i + 1, log.scans.size());
   }
 }
 

@@ -76,15 +76,15 @@ std::optional<EvenBeams> even_beams(const StatedAngles& stated, std::size_t num_
   return EvenBeams{stated.first_rad, *step_rad, agree ? AngleSource::kAsStated : AngleSource::kStep};
 }
 
-void set_beam_angles(SubScan& scan, std::vector<double> angles_rad) {
+void set_beam_angles(Sweep& scan, std::vector<double> angles_rad) {
   scan.first_angle_rad = angles_rad.empty() ? 0.0 : angles_rad.front();
   scan.angle_step_rad = runs_clockwise(angles_rad) ? -typical_spacing_rad(angles_rad) : typical_spacing_rad(angles_rad);
   scan.beam_angles_rad = std::move(angles_rad);
 }
 
-SubScan on_even_beams(const SubScan& scan) {
+Sweep on_even_beams(const Sweep& scan) {
   if (scan.is_evenly_spaced()) return scan;
-  SubScan even = scan;
+  Sweep even = scan;
   even.beam_angles_rad.clear();
   even.beam_times_s.clear();
   even.intensities.clear();

@@ -13,10 +13,10 @@ Log joined_logs(std::vector<Log> logs) {
   std::set<std::string> formats;
   for (std::size_t k = 0; k < logs.size(); ++k) {
     Log& log = logs[k];
-    const std::size_t first = all.positions.size();
+    const std::size_t first = all.scans.size();
     if (k > 0) all.starts.push_back(first);
     for (const std::size_t start : log.starts) all.starts.push_back(first + start);
-    std::move(log.positions.begin(), log.positions.end(), std::back_inserter(all.positions));
+    std::move(log.scans.begin(), log.scans.end(), std::back_inserter(all.scans));
     std::move(log.warnings.begin(), log.warnings.end(), std::back_inserter(all.warnings));
     for (NoReturnLevel& level : log.no_returns) {
       level.log += all.starts.size() - log.starts.size();
@@ -28,10 +28,10 @@ Log joined_logs(std::vector<Log> logs) {
 }
 
 std::vector<LogPart> parts_of(const Log& log) {
-  std::vector<LogPart> parts{{0, log.positions.size()}};
+  std::vector<LogPart> parts{{0, log.scans.size()}};
   for (const std::size_t start : log.starts) {
     parts.back().last = start;
-    parts.push_back({start, log.positions.size()});
+    parts.push_back({start, log.scans.size()});
   }
   return parts;
 }

@@ -17,12 +17,12 @@ constexpr Millimetres kBeside = 8;        // widths on each side that tell what 
 /// How often each distance around a window was read.
 class Readings {
  public:
-  Readings(const std::vector<SubScan*>& scans, const LevelWindow& window, Millimetres reach_mm)
+  Readings(const std::vector<Sweep*>& sweeps, const LevelWindow& window, Millimetres reach_mm)
       : window_(window), first_mm_(window.from_mm - reach_mm) {
     counts_.assign(static_cast<std::size_t>(window.width_mm() + 2 * reach_mm), 0.0);
-    for (const SubScan* scan : scans) {
-      for (const float range_m : scan->ranges_m) {
-        const Millimetres range_mm = to_mm(range_m, *scan);
+    for (const Sweep* sweep : sweeps) {
+      for (const float range_m : sweep->ranges_m) {
+        const Millimetres range_mm = to_mm(range_m, *sweep);
         const Millimetres at = range_mm - first_mm_;
         if (range_mm > 0 && at >= 0 && at < static_cast<Millimetres>(counts_.size())) ++counts_[index(at)];
       }
@@ -71,9 +71,9 @@ class Readings {
 
 }  // namespace
 
-LevelExtent extent_of(const std::vector<SubScan*>& scans, const LevelWindow& window, Millimetres resolution_mm) {
+LevelExtent extent_of(const std::vector<Sweep*>& sweeps, const LevelWindow& window, Millimetres resolution_mm) {
   const Millimetres gap_mm = std::max(resolution_mm, window.width_mm());
-  const Readings readings(scans, window, kBeside * gap_mm);
+  const Readings readings(sweeps, window, kBeside * gap_mm);
   const double in_window = readings.count(window.from_mm, window.end_mm);
   const double around = readings.usual_beside(resolution_mm);  // all of them may lie on one distance
   const double fewest = std::max(kTimesAround * around + kSigmas * std::sqrt(around) + 1.0, kFewestOfLevel * in_window);

@@ -16,6 +16,6 @@ struct LevelExtent {
 
 /// From the first to the last distance near `window` that stands out of the readings around it: the whole level, and no
 /// more than it. `resolution_mm` is that of the sensor.
-LevelExtent extent_of(const std::vector<SubScan*>& scans, const LevelWindow& window, Millimetres resolution_mm);
+LevelExtent extent_of(const std::vector<Sweep*>& sweeps, const LevelWindow& window, Millimetres resolution_mm);
 
 }  // namespace shapemap

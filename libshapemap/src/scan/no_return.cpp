@@ -32,22 +32,22 @@ constexpr Millimetres kNowhere_mm = std::numeric_limits<Millimetres>::max();
 constexpr std::array<LevelExtent, 2> kSickCodes{{{81825, 81915}, {32730, 32770}}};
 constexpr std::size_t kTimesMoreThanBelow = 5;
 
-using Scans = std::vector<SubScan*>;
+using Sweeps = std::vector<Sweep*>;
 
 struct Sensor {
   std::string label;
-  Scans scans;
+  Sweeps sweeps;
   std::vector<LevelExtent> levels;
 };
 
 std::vector<Sensor> sensors_of(Log& log) {
   std::vector<Sensor> sensors;
   std::map<std::string, std::size_t> known;
-  for (Position& position : log.positions) {
-    for (SubScan& scan : position.sub_scans) {
-      const auto [at, is_new] = known.emplace(scan.sensor_label, sensors.size());
-      if (is_new) sensors.push_back({scan.sensor_label, {}, {}});
-      sensors[at->second].scans.push_back(&scan);
+  for (Scan& position : log.scans) {
+    for (Sweep& sweep : position.sweeps) {
+      const auto [at, is_new] = known.emplace(sweep.sensor_label, sensors.size());
+      if (is_new) sensors.push_back({sweep.sensor_label, {}, {}});
+      sensors[at->second].sweeps.push_back(&sweep);
     }
   }
   return sensors;
@@ -66,14 +66,14 @@ std::vector<LevelExtent> merged(std::vector<LevelExtent> levels, Millimetres gap
   return all;
 }
 
-std::vector<LevelExtent> learned_levels(const Scans& scans) {
-  RangeSample sample(scans);
+std::vector<LevelExtent> learned_levels(const Sweeps& sweeps) {
+  RangeSample sample(sweeps);
   LevelTest test(sample);
   std::vector<LevelExtent> levels;
   while (levels.size() < kMostLevels) {
     const std::optional<LevelWindow> window = test.next();
     if (!window) break;
-    levels.push_back(extent_of(scans, *window, test.resolution_mm()));
+    levels.push_back(extent_of(sweeps, *window, test.resolution_mm()));
     sample.remove(levels.back().from_mm, levels.back().to_mm);
   }
   return merged(std::move(levels), test.resolution_mm());
@@ -81,12 +81,12 @@ std::vector<LevelExtent> learned_levels(const Scans& scans) {
 
 void learn_levels(std::vector<Sensor>& sensors) {
   std::vector<Sensor*> few;
-  Scans together;
+  Sweeps together;
   for (Sensor& sensor : sensors) {
-    if (sensors.size() == 1 || sensor.scans.size() >= kTooFewSweeps) sensor.levels = learned_levels(sensor.scans);
-    if (!sensor.levels.empty() || sensor.scans.size() >= kFewSweeps) continue;
+    if (sensors.size() == 1 || sensor.sweeps.size() >= kTooFewSweeps) sensor.levels = learned_levels(sensor.sweeps);
+    if (!sensor.levels.empty() || sensor.sweeps.size() >= kFewSweeps) continue;
     few.push_back(&sensor);
-    together.insert(together.end(), sensor.scans.begin(), sensor.scans.end());
+    together.insert(together.end(), sensor.sweeps.begin(), sensor.sweeps.end());
   }
   if (few.size() < 2) return;
   const std::vector<LevelExtent> levels = learned_levels(together);
@@ -99,7 +99,7 @@ Millimetres top_of(const Sensor& sensor) {
   for (auto level = sensor.levels.rbegin(); level != sensor.levels.rend(); ++level) {
     const Millimetres apart_mm =
         std::max(static_cast<Millimetres>(kApartOfLevel * level->to_mm), 3 * (level->to_mm - level->from_mm));
-    if (readings_beyond(sensor.scans, level->to_mm + apart_mm, kNowhere_mm, sensor.levels).are_surfaces()) break;
+    if (readings_beyond(sensor.sweeps, level->to_mm + apart_mm, kNowhere_mm, sensor.levels).are_surfaces()) break;
     top_mm = level->from_mm;
   }
   return top_mm;
@@ -107,16 +107,16 @@ Millimetres top_of(const Sensor& sensor) {
 
 /// Maxima of the header that surfaces lie far beyond.
 void give_up_wrong_maxima(const Sensor& sensor, Millimetres top_mm, std::vector<std::string>& warnings) {
-  std::map<double, Scans> by_maximum;
-  for (SubScan* scan : sensor.scans) {
-    if (scan->max_range_m > 0.0) by_maximum[scan->max_range_m].push_back(scan);
+  std::map<double, Sweeps> by_maximum;
+  for (Sweep* sweep : sensor.sweeps) {
+    if (sweep->max_range_m > 0.0) by_maximum[sweep->max_range_m].push_back(sweep);
   }
-  for (const auto& [maximum_m, scans] : by_maximum) {
+  for (const auto& [maximum_m, sweeps] : by_maximum) {
     const double far_mm = std::min(1000.0 * kFarBeyondHeader * maximum_m, static_cast<double>(kNowhere_mm - 1));
-    const FarReadings far = readings_beyond(scans, static_cast<Millimetres>(far_mm), top_mm, sensor.levels);
+    const FarReadings far = readings_beyond(sweeps, static_cast<Millimetres>(far_mm), top_mm, sensor.levels);
     const double fewest = kFewestBeyondHeader * static_cast<double>(far.num_all);
     if (!far.are_surfaces() || static_cast<double>(far.num_in_order) < fewest) continue;
-    for (SubScan* scan : scans) scan->max_range_m = 0.0;
+    for (Sweep* sweep : sweeps) sweep->max_range_m = 0.0;
     char text[200];
     std::snprintf(text, sizeof text,
                   "the maximum range of %.6g m in the log is not used: %zu readings continue each other beyond it",
@@ -127,9 +127,9 @@ void give_up_wrong_maxima(const Sensor& sensor, Millimetres top_mm, std::vector<
 
 void believe_sick_codes(Sensor& sensor) {
   Millimetres longest_mm = 0;
-  for (const SubScan* scan : sensor.scans) {
-    if (scan->max_range_m > 0.0) return;
-    for (const float range_m : scan->ranges_m) longest_mm = std::max(longest_mm, to_mm(range_m, *scan));
+  for (const Sweep* sweep : sensor.sweeps) {
+    if (sweep->max_range_m > 0.0) return;
+    for (const float range_m : sweep->ranges_m) longest_mm = std::max(longest_mm, to_mm(range_m, *sweep));
   }
   for (const LevelExtent& codes : kSickCodes) {
     if (longest_mm < codes.from_mm || longest_mm > codes.to_mm) continue;
@@ -137,9 +137,9 @@ void believe_sick_codes(Sensor& sensor) {
     std::size_t on_level = 0;
     std::size_t below = 0;
     double from_m = kLongestRange_m;
-    for (const SubScan* scan : sensor.scans) {
-      for (const float range_m : scan->ranges_m) {
-        const Millimetres range_mm = to_mm(range_m, *scan);
+    for (const Sweep* sweep : sensor.sweeps) {
+      for (const float range_m : sweep->ranges_m) {
+        const Millimetres range_mm = to_mm(range_m, *sweep);
         if (range_mm >= codes.from_mm) {
           ++on_level;
           from_m = std::min(from_m, static_cast<double>(range_m));
@@ -149,7 +149,7 @@ void believe_sick_codes(Sensor& sensor) {
       }
     }
     if (on_level <= kTimesMoreThanBelow * below) continue;
-    for (SubScan* scan : sensor.scans) scan->max_range_m = from_m;
+    for (Sweep* sweep : sensor.sweeps) sweep->max_range_m = from_m;
   }
 }
 
@@ -158,9 +158,9 @@ void take_levels(Sensor& sensor, Millimetres top_mm, std::vector<NoReturnLevel>&
   double top_m = top_mm < kNowhere_mm ? top_mm / 1000.0 : 0.0;
   for (const LevelExtent& level : sensor.levels) {
     NoReturnLevel note{sensor.label, std::numeric_limits<double>::infinity(), 0.0, 0, 0};
-    for (SubScan* scan : sensor.scans) {
-      for (float& range_m : scan->ranges_m) {
-        const Millimetres range_mm = to_mm(range_m, *scan);
+    for (Sweep* sweep : sensor.sweeps) {
+      for (float& range_m : sweep->ranges_m) {
+        const Millimetres range_mm = to_mm(range_m, *sweep);
         if (range_mm < level.from_mm || range_mm > level.to_mm) continue;
         ++note.num_readings;
         note.from_m = std::min(note.from_m, static_cast<double>(range_m));
@@ -173,8 +173,8 @@ void take_levels(Sensor& sensor, Millimetres top_mm, std::vector<NoReturnLevel>&
     noted.push_back(std::move(note));
   }
   if (top_m <= 0.0) return;
-  for (SubScan* scan : sensor.scans) {
-    if (scan->max_range_m <= 0.0 || scan->max_range_m > top_m) scan->max_range_m = top_m;
+  for (Sweep* sweep : sensor.sweeps) {
+    if (sweep->max_range_m <= 0.0 || sweep->max_range_m > top_m) sweep->max_range_m = top_m;
   }
 }
 

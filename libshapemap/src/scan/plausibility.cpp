@@ -39,7 +39,7 @@ std::string first_fault(std::initializer_list<Bounded> numbers) {
 }
 
 /// Where the beams of a scan point that is evenly spaced.
-std::string fault_of_angles(const SubScan& scan, std::size_t num_beams) {
+std::string fault_of_angles(const Sweep& scan, std::size_t num_beams) {
   const double step_rad = std::abs(scan.angle_step_rad);
   const std::string out_of_bounds =
       first_fault({{"first_angle", scan.first_angle_rad, kMostScanAngle_rad, " rad", "at most two full turns"},
@@ -55,7 +55,7 @@ std::string fault_of_angles(const SubScan& scan, std::size_t num_beams) {
 }
 
 /// Where beams with an angle each point. What is made of them has a place for every step between the outermost.
-std::string fault_of_beam_angles(const SubScan& scan) {
+std::string fault_of_beam_angles(const Sweep& scan) {
   for (const double angle_rad : scan.beam_angles_rad) {
     if (std::abs(angle_rad) <= kMostScanAngle_rad) continue;  // written so that NaN is a fault
     return stated("a beam's angle", angle_rad, " rad", "at most two full turns");
@@ -67,7 +67,7 @@ std::string fault_of_beam_angles(const SubScan& scan) {
 }
 
 /// Each list is empty or has an entry for each reading.
-std::string fault_of_lists(const SubScan& scan) {
+std::string fault_of_lists(const Sweep& scan) {
   const std::size_t num_readings = scan.ranges_m.size();
   for (const auto& [name, size] :
        {std::pair{"beam angles", scan.beam_angles_rad.size()}, std::pair{"beam times", scan.beam_times_s.size()},
@@ -78,7 +78,7 @@ std::string fault_of_lists(const SubScan& scan) {
   return "";
 }
 
-std::string fault_of_times(const SubScan& scan) {
+std::string fault_of_times(const Sweep& scan) {
   constexpr const char* kExpected = "at most a day from the position's timestamp";
   for (const float time_s : scan.beam_times_s) {
     if (!(std::abs(static_cast<double>(time_s)) <= kMostSweep_s)) {
@@ -101,7 +101,7 @@ std::string fault_of_mount(const MountPose& mount) {
 }
 
 /// Limits below 0 say no more than 0 does.
-std::string fault_of_limits(const SubScan& scan) {
+std::string fault_of_limits(const Sweep& scan) {
   return first_fault({{"min_range", scan.min_range_m, kMostMinRange_m, " m", "at most 1000 m"},
                       {"max_range", scan.max_range_m, kMostMaxRange_m, " m", "a finite number, or 0 for none"},
                       {"heading", scan.nominal_heading_rad, kMostHeading_rad, " rad", "at most a hundred turns"}});
@@ -109,7 +109,7 @@ std::string fault_of_limits(const SubScan& scan) {
 
 }  // namespace
 
-std::string implausibility(const SubScan& scan, std::size_t num_beams) {
+std::string implausibility(const Sweep& scan, std::size_t num_beams) {
   if (num_beams > kMostBeams) return std::to_string(num_beams) + " beams, expected at most a million";
   for (const std::string& fault :
        {fault_of_lists(scan), scan.is_evenly_spaced() ? fault_of_angles(scan, num_beams) : fault_of_beam_angles(scan),
@@ -119,7 +119,7 @@ std::string implausibility(const SubScan& scan, std::size_t num_beams) {
   return "";
 }
 
-std::string implausibility(const SubScan& scan) { return implausibility(scan, scan.ranges_m.size()); }
+std::string implausibility(const Sweep& scan) { return implausibility(scan, scan.ranges_m.size()); }
 
 std::string implausibility(const Pose2& pose) {
   return first_fault({{"x", pose.x_m, kMostCoordinate_m, " m", "at most 1e+09 m"},
@@ -136,7 +136,7 @@ std::string implausible_count(std::size_t num_before, const char* what) {
   return "more than " + std::to_string(kMostScans) + " " + what + ", expected a log of fewer";
 }
 
-std::string implausibility(const Position& position) {
+std::string implausibility(const Scan& position) {
   std::string fault = implausible_time(position.timestamp_s);
   if (fault.empty() && position.reference_pose) {
     fault = implausibility(*position.reference_pose);
@@ -146,16 +146,16 @@ std::string implausibility(const Position& position) {
     fault = first_fault({{"the recorded heading", *position.recorded_heading_rad, kMostHeading_rad, " rad",
                           "at most a hundred turns"}});
   }
-  for (std::size_t s = 0; fault.empty() && s < position.sub_scans.size(); ++s) {
-    fault = implausibility(position.sub_scans[s]);
-    if (!fault.empty() && position.sub_scans.size() > 1) fault = "sub-scan " + std::to_string(s) + ": " + fault;
+  for (std::size_t s = 0; fault.empty() && s < position.sweeps.size(); ++s) {
+    fault = implausibility(position.sweeps[s]);
+    if (!fault.empty() && position.sweeps.size() > 1) fault = "sub-scan " + std::to_string(s) + ": " + fault;
   }
   return fault;
 }
 
 void require_plausible(const Log& log) {
-  for (std::size_t i = 0; i < log.positions.size(); ++i) {
-    const std::string fault = implausibility(log.positions[i]);
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    const std::string fault = implausibility(log.scans[i]);
     if (!fault.empty()) throw InputError("position " + std::to_string(i) + ": " + fault);
   }
 }

@@ -19,7 +19,7 @@ bool FarReadings::are_surfaces() const {
   return num_in_order >= kFewestOfSurfaces && static_cast<double>(num_in_order) > kFewestInOrder * count;
 }
 
-FarReadings readings_beyond(const std::vector<SubScan*>& scans, Millimetres from_mm, Millimetres end_mm,
+FarReadings readings_beyond(const std::vector<Sweep*>& sweeps, Millimetres from_mm, Millimetres end_mm,
                             const std::vector<LevelExtent>& levels) {
   FarReadings far;
   const auto is_far = [&](Millimetres range_mm) {
@@ -27,12 +27,12 @@ FarReadings readings_beyond(const std::vector<SubScan*>& scans, Millimetres from
            std::none_of(levels.begin(), levels.end(),
                         [&](const LevelExtent& level) { return level.from_mm <= range_mm && range_mm <= level.to_mm; });
   };
-  for (const SubScan* scan : scans) {
-    const double step_rad = beam_step_rad(*scan);
+  for (const Sweep* sweep : sweeps) {
+    const double step_rad = beam_step_rad(*sweep);
     Millimetres before_mm = 0;
     bool before_counted = false;
-    for (const float range_m : scan->ranges_m) {
-      Millimetres range_mm = to_mm(range_m, *scan);
+    for (const float range_m : sweep->ranges_m) {
+      Millimetres range_mm = to_mm(range_m, *sweep);
       if (range_mm > 0) ++far.num_all;
       if (!is_far(range_mm)) range_mm = 0;
       const bool follows =

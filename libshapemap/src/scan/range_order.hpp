@@ -20,7 +20,7 @@ struct FarReadings {
 };
 
 /// Beyond `from_mm` and below `end_mm`.
-FarReadings readings_beyond(const std::vector<SubScan*>& scans, Millimetres from_mm, Millimetres end_mm,
+FarReadings readings_beyond(const std::vector<Sweep*>& sweeps, Millimetres from_mm, Millimetres end_mm,
                             const std::vector<LevelExtent>& levels);
 
 }  // namespace shapemap

@@ -21,16 +21,16 @@ constexpr std::size_t kMostBridged = 8;  // beams without a reading inside of a 
 
 }  // namespace
 
-Millimetres to_mm(float range_m, const SubScan& scan) {
+Millimetres to_mm(float range_m, const Sweep& sweep) {
   if (!(range_m > 0.0F && range_m < static_cast<float>(kLongestRange_m))) return 0;  // false for NaN
-  if (range_m < static_cast<float>(scan.min_range_m)) return 0;
+  if (range_m < static_cast<float>(sweep.min_range_m)) return 0;
   return static_cast<Millimetres>(range_m * 1000.0F + 0.5F);
 }
 
-double beam_step_rad(const SubScan& scan) {
-  const std::size_t num_beams = scan.ranges_m.size();
+double beam_step_rad(const Sweep& sweep) {
+  const std::size_t num_beams = sweep.ranges_m.size();
   if (num_beams < 2) return 2 * kPi;
-  const double step_rad = std::abs(scan.angle_step_rad);
+  const double step_rad = std::abs(sweep.angle_step_rad);
   const double widest_rad = 2 * kPi / static_cast<double>(num_beams - 1);
   return step_rad > 0.0 && step_rad <= widest_rad ? step_rad : widest_rad;
 }
@@ -40,21 +40,21 @@ Millimetres continuity_mm(Millimetres range_mm, double step_rad, std::size_t num
   return static_cast<Millimetres>(share * range_mm + noise_mm);
 }
 
-RangeSample::RangeSample(const std::vector<SubScan*>& scans) {
+RangeSample::RangeSample(const std::vector<Sweep*>& sweeps) {
   std::size_t num_readings = 0;
-  for (const SubScan* scan : scans) num_readings += scan->ranges_m.size();
-  const std::size_t mean_beams = std::max<std::size_t>(1, num_readings / std::max<std::size_t>(1, scans.size()));
-  const std::size_t wanted = std::min(scans.size(), std::max(kFewestSweeps, kMostSampled / mean_beams));
+  for (const Sweep* sweep : sweeps) num_readings += sweep->ranges_m.size();
+  const std::size_t mean_beams = std::max<std::size_t>(1, num_readings / std::max<std::size_t>(1, sweeps.size()));
+  const std::size_t wanted = std::min(sweeps.size(), std::max(kFewestSweeps, kMostSampled / mean_beams));
   for (std::size_t i = 0; i < wanted; ++i) {
-    const SubScan& scan = *scans[i * scans.size() / wanted];
-    Sweep sweep;
-    sweep.begin = ranges_mm_.size();
-    sweep.size = scan.ranges_m.size();
-    sweep.step_rad = beam_step_rad(scan);
-    sweep.is_closed = sweep.step_rad * (static_cast<double>(sweep.size) + 1.0) > 2 * kPi;
-    for (const float range_m : scan.ranges_m) ranges_mm_.push_back(to_mm(range_m, scan));
-    largest_step_rad_ = std::max(largest_step_rad_, sweep.step_rad);
-    sweeps_.push_back(sweep);
+    const Sweep& sweep = *sweeps[i * sweeps.size() / wanted];
+    SampledSweep sampled;
+    sampled.begin = ranges_mm_.size();
+    sampled.size = sweep.ranges_m.size();
+    sampled.step_rad = beam_step_rad(sweep);
+    sampled.is_closed = sampled.step_rad * (static_cast<double>(sampled.size) + 1.0) > 2 * kPi;
+    for (const float range_m : sweep.ranges_m) ranges_mm_.push_back(to_mm(range_m, sweep));
+    largest_step_rad_ = std::max(largest_step_rad_, sampled.step_rad);
+    sweeps_.push_back(sampled);
   }
   for (const Millimetres range_mm : ranges_mm_) longest_mm_ = std::max(longest_mm_, range_mm);
   estimate_noise();
@@ -63,7 +63,7 @@ RangeSample::RangeSample(const std::vector<SubScan*>& scans) {
 
 void RangeSample::estimate_noise() {
   std::vector<Millimetres> bends_mm;
-  for (const Sweep& sweep : sweeps_) {
+  for (const SampledSweep& sweep : sweeps_) {
     const Millimetres* readings_mm = readings(sweep);
     for (std::size_t beam = 2; beam < sweep.size; beam += 3) {
       const Millimetres a_mm = readings_mm[beam - 2];
@@ -96,7 +96,7 @@ void RangeSample::cut_into_fragments() {
 }
 
 void RangeSample::cut(std::size_t index) {
-  const Sweep& sweep = sweeps_[index];
+  const SampledSweep& sweep = sweeps_[index];
   const Millimetres* readings_mm = readings(sweep);
   Fragment current;
   for (std::size_t beam = 0; beam < sweep.size; ++beam) {

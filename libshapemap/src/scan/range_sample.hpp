@@ -12,10 +12,10 @@ namespace shapemap {
 /// Distances are counted in whole millimetres here; 0 is no distance.
 using Millimetres = std::int32_t;
 
-Millimetres to_mm(float range_m, const SubScan& scan);
+Millimetres to_mm(float range_m, const Sweep& sweep);
 
 /// The mean angle between neighbouring beams, never 0.
-double beam_step_rad(const SubScan& scan);
+double beam_step_rad(const Sweep& sweep);
 
 /// By how much two readings may differ that `num_beams` lie between, if one surface goes on from one to the other.
 Millimetres continuity_mm(Millimetres range_mm, double step_rad, std::size_t num_beams, double noise_mm);
@@ -38,12 +38,12 @@ struct Fragment {
 /// Evenly chosen sweeps of one sensor, cut into fragments.
 class RangeSample {
  public:
-  explicit RangeSample(const std::vector<SubScan*>& scans);
+  explicit RangeSample(const std::vector<Sweep*>& sweeps);
 
   /// These readings are known to be no distances from now on.
   void remove(Millimetres from_mm, Millimetres to_mm);
 
-  struct Sweep {
+  struct SampledSweep {
     std::size_t begin = 0;  ///< of its readings
     std::size_t size = 0;
     double step_rad = 0.0;
@@ -51,9 +51,9 @@ class RangeSample {
     std::size_t first_fragment = 0;
     std::size_t end_fragment = 0;
   };
-  const std::vector<Sweep>& sweeps() const { return sweeps_; }
+  const std::vector<SampledSweep>& sweeps() const { return sweeps_; }
   const std::vector<Fragment>& fragments() const { return fragments_; }
-  const Millimetres* readings(const Sweep& sweep) const { return ranges_mm_.data() + sweep.begin; }
+  const Millimetres* readings(const SampledSweep& sweep) const { return ranges_mm_.data() + sweep.begin; }
   Millimetres longest_mm() const { return longest_mm_; }
   double largest_step_rad() const { return largest_step_rad_; }
 
@@ -63,7 +63,7 @@ class RangeSample {
   void cut(std::size_t index);
 
   std::vector<Millimetres> ranges_mm_;
-  std::vector<Sweep> sweeps_;
+  std::vector<SampledSweep> sweeps_;
   std::vector<Fragment> fragments_;
   Millimetres longest_mm_ = 0;
   double largest_step_rad_ = 0.0;

@@ -46,10 +46,10 @@ struct Readings {
 Readings readings_of(const Log& log) {
   std::vector<double> ranges;
   std::vector<double> bends;
-  const std::size_t stride = std::max<std::size_t>(1, log.positions.size() / kMostScans);
-  for (std::size_t i = 0; i < log.positions.size(); i += stride) {
-    for (const SubScan& scan : log.positions[i].sub_scans) {
-      const std::vector<float>& r = scan.ranges_m;
+  const std::size_t stride = std::max<std::size_t>(1, log.scans.size() / kMostScans);
+  for (std::size_t i = 0; i < log.scans.size(); i += stride) {
+    for (const Sweep& sweep : log.scans[i].sweeps) {
+      const std::vector<float>& r = sweep.ranges_m;
       for (std::size_t k = 0; k < r.size(); ++k) {
         if (!is_reading(r[k])) continue;
         ranges.push_back(r[k]);
@@ -98,11 +98,11 @@ void scale_ranges(Log& log, RangeUnit unit) {
   const double scale = metres_per(unit);
   if (scale == 1.0) return;
   const double middle = readings_of(log).middle;
-  for (Position& position : log.positions) {
-    for (SubScan& scan : position.sub_scans) {
-      for (float& range : scan.ranges_m) range = static_cast<float>(range * scale);
-      if (scan.max_range_m >= middle) scan.max_range_m *= scale;
-      if (scan.min_range_m * scale >= kLeastMinRange_m) scan.min_range_m *= scale;
+  for (Scan& position : log.scans) {
+    for (Sweep& sweep : position.sweeps) {
+      for (float& range : sweep.ranges_m) range = static_cast<float>(range * scale);
+      if (sweep.max_range_m >= middle) sweep.max_range_m *= scale;
+      if (sweep.min_range_m * scale >= kLeastMinRange_m) sweep.min_range_m *= scale;
     }
   }
 }

@@ -16,19 +16,19 @@ Eigen::Matrix3d rotation_of(const MountPose& mount) {
 }
 
 /// Uneven beams come in any order. Equal angles keep the order of the readings.
-void sort_by_angle(const SubScan& sub_scan, std::vector<Return>& returns) {
+void sort_by_angle(const Sweep& sweep, std::vector<Return>& returns) {
   std::stable_sort(returns.begin(), returns.end(), [&](const Return& a, const Return& b) {
-    return sub_scan.beam_angles_rad[a.beam] < sub_scan.beam_angles_rad[b.beam];
+    return sweep.beam_angles_rad[a.beam] < sweep.beam_angles_rad[b.beam];
   });
 }
 
 /// Takes readings of one sub-scan to the floor plan, in the robot's frame.
 class BeamPoints {
  public:
-  explicit BeamPoints(const SubScan& sub_scan)
-      : sub_scan_(sub_scan),
-        robot_from_sensor_(rotation_of(sub_scan.robot_from_sensor)),
-        mount_m_(sub_scan.robot_from_sensor.x_m, sub_scan.robot_from_sensor.y_m) {}
+  explicit BeamPoints(const Sweep& sweep)
+      : sub_scan_(sweep),
+        robot_from_sensor_(rotation_of(sweep.robot_from_sensor)),
+        mount_m_(sweep.robot_from_sensor.x_m, sweep.robot_from_sensor.y_m) {}
 
   /// Cosine of the angle between the sensor's z axis and the robot's.
   double up() const { return robot_from_sensor_(2, 2); }
@@ -42,7 +42,7 @@ class BeamPoints {
   }
 
  private:
-  const SubScan& sub_scan_;
+  const Sweep& sub_scan_;
   Eigen::Matrix3d robot_from_sensor_;
   Point2 mount_m_;
 };
@@ -51,10 +51,10 @@ class BeamPoints {
 
 bool is_upside_down(const MountPose& robot_from_sensor) { return rotation_of(robot_from_sensor)(2, 2) < 0.0; }
 
-RangeLimits range_limits(const SubScan& sub_scan, const ReturnOptions& options) {
+RangeLimits range_limits(const Sweep& sweep, const ReturnOptions& options) {
   RangeLimits limits;
-  limits.min_m = options.min_range_m > 0.0 ? options.min_range_m : sub_scan.min_range_m;
-  limits.max_m = options.max_range_m > 0.0 ? options.max_range_m : sub_scan.max_range_m;
+  limits.min_m = options.min_range_m > 0.0 ? options.min_range_m : sweep.min_range_m;
+  limits.max_m = options.max_range_m > 0.0 ? options.max_range_m : sweep.max_range_m;
   if (!(limits.max_m > 0.0 && limits.max_m < kLongestRange_m)) limits.max_m = kLongestRange_m;
   return limits;
 }
@@ -70,42 +70,42 @@ bool is_open(float range_m, const RangeLimits& limits) {
   return limits.max_m < kLongestRange_m && range_m >= static_cast<float>(limits.max_m);
 }
 
-std::vector<Return> returns_in_robot(const SubScan& sub_scan, const ReturnOptions& options) {
-  const BeamPoints points(sub_scan);
+std::vector<Return> returns_in_robot(const Sweep& sweep, const ReturnOptions& options) {
+  const BeamPoints points(sweep);
   std::vector<Return> returns;
   if (std::abs(points.up()) < std::cos(options.max_mount_tilt_rad)) return returns;
 
-  const RangeLimits limits = range_limits(sub_scan, options);
-  returns.reserve(sub_scan.ranges_m.size());
-  for (std::size_t beam = 0; beam < sub_scan.ranges_m.size(); ++beam) {
-    const float range_m = sub_scan.ranges_m[beam];
+  const RangeLimits limits = range_limits(sweep, options);
+  returns.reserve(sweep.ranges_m.size());
+  for (std::size_t beam = 0; beam < sweep.ranges_m.size(); ++beam) {
+    const float range_m = sweep.ranges_m[beam];
     if (is_return(range_m, limits)) returns.push_back({points.at(beam, static_cast<double>(range_m)), beam, range_m});
   }
-  if (!sub_scan.is_evenly_spaced()) sort_by_angle(sub_scan, returns);
-  const bool sorted_clockwise = sub_scan.is_evenly_spaced() && sub_scan.angle_step_rad < 0.0;
+  if (!sweep.is_evenly_spaced()) sort_by_angle(sweep, returns);
+  const bool sorted_clockwise = sweep.is_evenly_spaced() && sweep.angle_step_rad < 0.0;
   const bool clockwise_from_above = sorted_clockwise != (points.up() < 0.0);
   if (clockwise_from_above) std::reverse(returns.begin(), returns.end());
   return returns;
 }
 
-std::vector<Point2> open_ends_in_robot(const SubScan& sub_scan, const ReturnOptions& options, double length_m) {
-  const BeamPoints points(sub_scan);
+std::vector<Point2> open_ends_in_robot(const Sweep& sweep, const ReturnOptions& options, double length_m) {
+  const BeamPoints points(sweep);
   std::vector<Point2> ends;
   if (std::abs(points.up()) < std::cos(options.max_mount_tilt_rad)) return ends;
 
-  const RangeLimits limits = range_limits(sub_scan, options);
-  for (std::size_t beam = 0; beam < sub_scan.ranges_m.size(); ++beam) {
-    if (!is_open(sub_scan.ranges_m[beam], limits)) continue;
+  const RangeLimits limits = range_limits(sweep, options);
+  for (std::size_t beam = 0; beam < sweep.ranges_m.size(); ++beam) {
+    if (!is_open(sweep.ranges_m[beam], limits)) continue;
     ends.push_back(points.at(beam, std::min(length_m, limits.max_m)));
   }
   return ends;
 }
 
-Pose2 robot_from_sensor2(const SubScan& sub_scan) {
-  const Eigen::Vector3d forward = rotation_of(sub_scan.robot_from_sensor) * Eigen::Vector3d::UnitX();
-  const Point2 mount_m(sub_scan.robot_from_sensor.x_m, sub_scan.robot_from_sensor.y_m);
-  const Point2 t = rotate(mount_m, sub_scan.nominal_heading_rad);
-  return {t.x(), t.y(), wrap_angle(std::atan2(forward.y(), forward.x()) + sub_scan.nominal_heading_rad)};
+Pose2 robot_from_sensor2(const Sweep& sweep) {
+  const Eigen::Vector3d forward = rotation_of(sweep.robot_from_sensor) * Eigen::Vector3d::UnitX();
+  const Point2 mount_m(sweep.robot_from_sensor.x_m, sweep.robot_from_sensor.y_m);
+  const Point2 t = rotate(mount_m, sweep.nominal_heading_rad);
+  return {t.x(), t.y(), wrap_angle(std::atan2(forward.y(), forward.x()) + sweep.nominal_heading_rad)};
 }
 
 }  // namespace shapemap

@@ -22,10 +22,10 @@ constexpr std::size_t kMostLate = 10;
 using Times = std::vector<double>;
 using Order = std::vector<std::size_t>;
 
-Times times_of(const std::vector<Position>& positions) {
+Times times_of(const std::vector<Scan>& scans) {
   Times times_s;
-  times_s.reserve(positions.size());
-  for (const Position& position : positions) times_s.push_back(position.timestamp_s);
+  times_s.reserve(scans.size());
+  for (const Scan& position : scans) times_s.push_back(position.timestamp_s);
   return times_s;
 }
 
@@ -66,12 +66,12 @@ std::optional<Order> order_by_time(const Times& times_s) {
 }
 
 /// How different two scans look: the middle one of the differences of their readings. What hit nothing tells nothing.
-double difference_m(const Position& a, const Position& b) {
-  if (a.sub_scans.empty() || b.sub_scans.empty()) return 0.0;
-  const std::vector<float>& of_a = a.sub_scans.front().ranges_m;
-  const std::vector<float>& of_b = b.sub_scans.front().ranges_m;
-  const RangeLimits limits_a = range_limits(a.sub_scans.front(), {});
-  const RangeLimits limits_b = range_limits(b.sub_scans.front(), {});
+double difference_m(const Scan& a, const Scan& b) {
+  if (a.sweeps.empty() || b.sweeps.empty()) return 0.0;
+  const std::vector<float>& of_a = a.sweeps.front().ranges_m;
+  const std::vector<float>& of_b = b.sweeps.front().ranges_m;
+  const RangeLimits limits_a = range_limits(a.sweeps.front(), {});
+  const RangeLimits limits_b = range_limits(b.sweeps.front(), {});
   std::vector<double> differences_m;
   for (std::size_t i = 0; i < std::min(of_a.size(), of_b.size()); ++i) {
     if (!is_return(of_a[i], limits_a) || !is_return(of_b[i], limits_b)) continue;
@@ -85,34 +85,34 @@ double difference_m(const Position& a, const Position& b) {
 
 /// Whether the scans change less from one to the next in `order` than in the order of the log. Where times were
 /// stamped late, the order of the log is right; where scans were swapped, their times are.
-bool is_smoother(const std::vector<Position>& positions, const Order& order) {
+bool is_smoother(const std::vector<Scan>& scans, const Order& order) {
   double as_ordered_m = 0.0;
   double as_recorded_m = 0.0;
   for (std::size_t i = 1; i < order.size(); ++i) {
     if (order[i - 1] + 1 == order[i]) continue;
-    as_ordered_m += difference_m(positions[order[i - 1]], positions[order[i]]);
+    as_ordered_m += difference_m(scans[order[i - 1]], scans[order[i]]);
   }
   std::vector<bool> follows(order.size(), false);
   for (std::size_t i = 1; i < order.size(); ++i) follows[order[i]] = order[i - 1] + 1 == order[i];
   for (std::size_t i = 1; i < order.size(); ++i) {
-    if (!follows[i]) as_recorded_m += difference_m(positions[i - 1], positions[i]);
+    if (!follows[i]) as_recorded_m += difference_m(scans[i - 1], scans[i]);
   }
   return as_ordered_m < as_recorded_m;
 }
 
 /// Sorts positions by time where that is the order in which they were taken; how many moved.
-std::size_t sort_swapped(std::vector<Position>& positions, Times& times_s) {
+std::size_t sort_swapped(std::vector<Scan>& scans, Times& times_s) {
   const std::optional<Order> order = order_by_time(times_s);
-  if (!order || !is_smoother(positions, *order)) return 0;
+  if (!order || !is_smoother(scans, *order)) return 0;
   std::size_t num_moved = 0;
-  std::vector<Position> sorted;
-  sorted.reserve(positions.size());
+  std::vector<Scan> sorted;
+  sorted.reserve(scans.size());
   for (std::size_t i = 0; i < order->size(); ++i) {
     if ((*order)[i] != i) ++num_moved;
-    sorted.push_back(std::move(positions[(*order)[i]]));
+    sorted.push_back(std::move(scans[(*order)[i]]));
   }
-  positions = std::move(sorted);
-  times_s = times_of(positions);
+  scans = std::move(sorted);
+  times_s = times_of(scans);
   return num_moved;
 }
 
@@ -205,23 +205,23 @@ std::vector<std::string> TimestampRepairs::lines() const {
   return lines;
 }
 
-TimestampRepairs mend_timestamps(std::vector<Position>& positions) {
+TimestampRepairs mend_timestamps(std::vector<Scan>& scans) {
   TimestampRepairs repairs;
-  Times times_s = times_of(positions);
+  Times times_s = times_of(scans);
   if (times_s.size() < 2 || increases(times_s)) return repairs;
   if (say_nothing(times_s)) {
     repairs.all_replaced = true;
     std::iota(times_s.begin(), times_s.end(), 0.0);
   } else {
     const double step_s = usual_step_s(times_s);
-    repairs.num_sorted = sort_swapped(positions, times_s);
+    repairs.num_sorted = sort_swapped(scans, times_s);
     if (repairs.num_sorted == 0) {
       repairs.num_interpolated = interpolate_odd_ones(times_s, step_s);
       repairs.num_set_back = move_on_after_set_back(times_s, step_s);
     }
     repairs.num_interpolated += spread_repeated(times_s, step_s);
   }
-  for (std::size_t i = 0; i < positions.size(); ++i) positions[i].timestamp_s = times_s[i];
+  for (std::size_t i = 0; i < scans.size(); ++i) scans[i].timestamp_s = times_s[i];
   return repairs;
 }
 

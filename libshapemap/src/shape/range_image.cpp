@@ -16,27 +16,27 @@ constexpr double kOnSegment_m = 0.10;
 constexpr double kLongestFootprint = 10.0;
 
 /// The bearings of the beams, seen from above: from `first_rad` on, counterclockwise.
-struct Bearings {
+struct LocalizationState {
   double first_rad = 0.0;
   double step_rad = 0.0;
   std::size_t count = 0;
 };
 
-Bearings bearings_of_even_beams(const SubScan& sub_scan, bool upside_down) {
-  const double first_rad = sub_scan.beam_angle_rad(0);
-  const double last_rad = sub_scan.beam_angle_rad(sub_scan.ranges_m.size() - 1);
+LocalizationState bearings_of_even_beams(const Sweep& sweep, bool upside_down) {
+  const double first_rad = sweep.beam_angle_rad(0);
+  const double last_rad = sweep.beam_angle_rad(sweep.ranges_m.size() - 1);
   const double lowest_rad = upside_down ? std::min(-first_rad, -last_rad) : std::min(first_rad, last_rad);
-  return {wrap_angle(lowest_rad), std::abs(sub_scan.angle_step_rad), sub_scan.ranges_m.size()};
+  return {wrap_angle(lowest_rad), std::abs(sweep.angle_step_rad), sweep.ranges_m.size()};
 }
 
 /// As many bearings, one typical step apart, as cover all beams; at most a full turn of them.
-Bearings bearings_of_uneven_beams(const SubScan& sub_scan, bool upside_down) {
-  const auto [lowest, highest] = std::minmax_element(sub_scan.beam_angles_rad.begin(), sub_scan.beam_angles_rad.end());
+LocalizationState bearings_of_uneven_beams(const Sweep& sweep, bool upside_down) {
+  const auto [lowest, highest] = std::minmax_element(sweep.beam_angles_rad.begin(), sweep.beam_angles_rad.end());
   const double span_rad = *highest - *lowest;
-  const double step_rad = std::abs(sub_scan.angle_step_rad);
+  const double step_rad = std::abs(sweep.angle_step_rad);
   if (!(step_rad > 0.0)) return {};
   const double in_turn = std::max(1.0, std::round(2.0 * kPi / step_rad));
-  Bearings bearings;
+  LocalizationState bearings;
   bearings.first_rad = wrap_angle(upside_down ? -*highest : *lowest);
   bearings.step_rad = step_rad;
   bearings.count = static_cast<std::size_t>(std::min(in_turn, std::round(span_rad / step_rad) + 1.0));
@@ -48,13 +48,13 @@ Bearings bearings_of_uneven_beams(const SubScan& sub_scan, bool upside_down) {
 }
 
 /// Both sensors' angles run clockwise, seen from above, where the sensor is upside down.
-Bearings bearings_of(const SubScan& sub_scan) {
-  const bool upside_down = is_upside_down(sub_scan.robot_from_sensor);
-  return sub_scan.is_evenly_spaced() ? bearings_of_even_beams(sub_scan, upside_down)
-                                     : bearings_of_uneven_beams(sub_scan, upside_down);
+LocalizationState bearings_of(const Sweep& sweep) {
+  const bool upside_down = is_upside_down(sweep.robot_from_sensor);
+  return sweep.is_evenly_spaced() ? bearings_of_even_beams(sweep, upside_down)
+                                  : bearings_of_uneven_beams(sweep, upside_down);
 }
 
-Point2 normal_at(const SubScanShape& shape, std::size_t point, const Point2& to_sensor) {
+Point2 normal_at(const SweepShape& shape, std::size_t point, const Point2& to_sensor) {
   const int closest = shape.polylines.closest_segment[point];
   if (closest < 0) return to_sensor;
   const LineSegment& segment = shape.polylines.segments[static_cast<std::size_t>(closest)];
@@ -67,9 +67,9 @@ Point2 normal_at(const SubScanShape& shape, std::size_t point, const Point2& to_
 /// the hit nearest to its middle stays; a bearing that none falls into takes a hit that is less than a step away.
 class ImageFilling {
  public:
-  ImageFilling(const SubScan& sub_scan, const SubScanShape& shape, const Pose2& robot_from_sensor, RangeImage& image)
+  ImageFilling(const Sweep& sweep, const SweepShape& shape, const Pose2& robot_from_sensor, RangeImage& image)
       : shape_(shape), robot_from_sensor_(robot_from_sensor), image_(image) {
-    if (!sub_scan.is_evenly_spaced()) steps_off_.assign(image.beams.size(), kReach_steps);
+    if (!sweep.is_evenly_spaced()) steps_off_.assign(image.beams.size(), kReach_steps);
   }
 
   void add(std::size_t point) {
@@ -106,7 +106,7 @@ class ImageFilling {
     beam.footprint_m = 0.5 * beam.range_m * image_.step_rad / incidence;
   }
 
-  const SubScanShape& shape_;
+  const SweepShape& shape_;
   const Pose2& robot_from_sensor_;
   RangeImage& image_;
   std::vector<double> steps_off_;  ///< how far the hit of each bearing is off its middle; empty for even beams
@@ -128,17 +128,17 @@ int RangeImage::beam_at(double bearing_rad) const {
   return beams_in_turn - count < 1e-6 ? static_cast<int>(beams.size()) - 1 : -1;
 }
 
-RangeImage range_image(const SubScan& sub_scan, const SubScanShape& shape) {
+RangeImage range_image(const Sweep& sweep, const SweepShape& shape) {
   RangeImage image;
-  const Pose2 robot_from_sensor = robot_from_sensor2(sub_scan);
+  const Pose2 robot_from_sensor = robot_from_sensor2(sweep);
   image.sensor_from_robot = inverse(robot_from_sensor);
-  if (sub_scan.ranges_m.empty()) return image;
-  const Bearings bearings = bearings_of(sub_scan);
+  if (sweep.ranges_m.empty()) return image;
+  const LocalizationState bearings = bearings_of(sweep);
   image.step_rad = bearings.step_rad;
   if (!(image.step_rad > 0.0)) return image;
   image.first_bearing_rad = bearings.first_rad;
   image.beams.resize(bearings.count);
-  ImageFilling filling(sub_scan, shape, robot_from_sensor, image);
+  ImageFilling filling(sweep, shape, robot_from_sensor, image);
   for (std::size_t i = 0; i < shape.scan_points.size(); ++i) filling.add(i);
   return image;
 }

@@ -72,7 +72,7 @@ double seen_share(const std::vector<ShapePoint>& points, const std::vector<Range
   std::vector<Point2> sensors_m;
   for (const RangeImage& image : images) sensors_m.push_back(inverse(image.sensor_from_robot).translation());
   for (const ShapePoint& point : points) {
-    const Point2 from_sensor_m = point.p_m - sensors_m[static_cast<std::size_t>(point.sub_scan)];
+    const Point2 from_sensor_m = point.p_m - sensors_m[static_cast<std::size_t>(point.sweep)];
     const double turns = std::atan2(from_sensor_m.y(), from_sensor_m.x()) / (2.0 * kPi);
     const auto sector = static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(kSectors));
     seen.set(std::min(sector, kSectors - 1));
@@ -89,14 +89,14 @@ bool looks_all_round(const ScanView& view) {
   return seen_rad >= kAllRound_rad;
 }
 
-ScanView view_of(const Position& position, const ReturnOptions& returns, const PolylineOptions& polylines,
+ScanView view_of(const Scan& position, const ReturnOptions& returns, const PolylineOptions& polylines,
                  const ShapeOptions& shape, const ViewOptions& options) {
   ScanView view;
   std::vector<ShapePoint> all;
-  for (std::size_t s = 0; s < position.sub_scans.size(); ++s) {
-    const SubScanShape part = sub_scan_shape(position.sub_scans[s], static_cast<int>(s), returns, polylines, shape);
+  for (std::size_t s = 0; s < position.sweeps.size(); ++s) {
+    const SweepShape part = sweep_shape(position.sweeps[s], static_cast<int>(s), returns, polylines, shape);
     all.insert(all.end(), part.shape_points.begin(), part.shape_points.end());
-    view.images.push_back(range_image(position.sub_scans[s], part));
+    view.images.push_back(range_image(position.sweeps[s], part));
   }
   view.tangents = tangent_histogram(all);
   view.reach_m = reach_m(view.images);

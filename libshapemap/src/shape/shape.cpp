@@ -7,13 +7,13 @@ namespace shapemap {
 namespace {
 
 /// Points every `spacing_m` of arc length, the first half a spacing from the start; a short segment gives its middle.
-void resample(const LineSegment& segment, int sub_scan, double spacing_m, std::vector<ShapePoint>& points) {
+void resample(const LineSegment& segment, int sweep, double spacing_m, std::vector<ShapePoint>& points) {
   const double length_m = segment.length_m();
   const auto count = std::max(1L, std::lround(length_m / spacing_m));
   const Point2 step = (segment.end_m - segment.start_m) / static_cast<double>(count);
   const double tangent_rad = segment.tangent_rad();
   for (long k = 0; k < count; ++k) {
-    points.push_back({segment.start_m + (static_cast<double>(k) + 0.5) * step, tangent_rad, sub_scan});
+    points.push_back({segment.start_m + (static_cast<double>(k) + 0.5) * step, tangent_rad, sweep});
   }
 }
 
@@ -30,13 +30,13 @@ void thin_out(std::vector<Point>& points, std::size_t max_points) {
 
 }  // namespace
 
-SubScanShape sub_scan_shape(const SubScan& sub_scan, int sub_scan_index, const ReturnOptions& returns,
-                            const PolylineOptions& polylines, const ShapeOptions& options) {
-  SubScanShape shape;
-  std::vector<Return> hits = returns_in_robot(sub_scan, returns);
+SweepShape sweep_shape(const Sweep& sweep, int sub_scan_index, const ReturnOptions& returns,
+                       const PolylineOptions& polylines, const ShapeOptions& options) {
+  SweepShape shape;
+  std::vector<Return> hits = returns_in_robot(sweep, returns);
   thin_out(hits, static_cast<std::size_t>(options.max_points));
   for (const Return& r : hits) {
-    shape.scan_points.push_back({r.p_in_robot_m, r.range_m * std::abs(sub_scan.angle_step_rad)});
+    shape.scan_points.push_back({r.p_in_robot_m, r.range_m * std::abs(sweep.angle_step_rad)});
   }
   shape.polylines = fit_polylines(shape.scan_points, polylines);
   if (options.points == ShapePoints::kResampled) {
@@ -54,12 +54,12 @@ SubScanShape sub_scan_shape(const SubScan& sub_scan, int sub_scan_index, const R
   return shape;
 }
 
-Shape shape_of(const Position& position, const ReturnOptions& returns, const PolylineOptions& polylines,
+Shape shape_of(const Scan& position, const ReturnOptions& returns, const PolylineOptions& polylines,
                const ShapeOptions& options) {
   Shape shape;
-  shape.num_sub_scans = static_cast<int>(position.sub_scans.size());
-  for (int s = 0; s < shape.num_sub_scans; ++s) {
-    const auto part = sub_scan_shape(position.sub_scans[static_cast<std::size_t>(s)], s, returns, polylines, options);
+  shape.num_sweeps = static_cast<int>(position.sweeps.size());
+  for (int s = 0; s < shape.num_sweeps; ++s) {
+    const auto part = sweep_shape(position.sweeps[static_cast<std::size_t>(s)], s, returns, polylines, options);
     shape.points.insert(shape.points.end(), part.shape_points.begin(), part.shape_points.end());
   }
   thin_out(shape.points, static_cast<std::size_t>(options.max_points));
@@ -70,7 +70,7 @@ Shape moved(const Shape& shape, const Pose2& b_from_a, const std::vector<Pose2>&
   Shape result = shape;
   for (ShapePoint& point : result.points) {
     const bool corrected = !sub_scan_poses.empty();
-    const Pose2 pose = corrected ? b_from_a * sub_scan_poses[static_cast<std::size_t>(point.sub_scan)] : b_from_a;
+    const Pose2 pose = corrected ? b_from_a * sub_scan_poses[static_cast<std::size_t>(point.sweep)] : b_from_a;
     point.p_m = pose * point.p_m;
     point.tangent_rad = wrap_angle(point.tangent_rad + pose.theta_rad);
   }

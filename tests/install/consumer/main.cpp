@@ -9,10 +9,10 @@
 int main() {
   shapemap::validate_all(shapemap::MappingOptions{});
 
-  shapemap::SubScan sub_scan;
-  sub_scan.ranges_m = {1.0F, 2.0F};
-  sub_scan.angle_step_rad = shapemap::kPi / 2;
-  const auto returns = shapemap::returns_in_robot(sub_scan, {});
+  shapemap::Sweep sweep;
+  sweep.ranges_m = {1.0F, 2.0F};
+  sweep.angle_step_rad = shapemap::kPi / 2;
+  const auto returns = shapemap::returns_in_robot(sweep, {});
   const bool as_expected = returns.size() == 2 && (returns[1].p_in_robot_m - shapemap::Point2(0.0, 2.0)).norm() < 1e-6;
   std::cout << "shapemap " << shapemap::kVersion << (as_expected ? ": ok" : ": wrong returns") << '\n';
   return as_expected ? 0 : 1;

@@ -45,11 +45,9 @@ Straightened straightened_log(const Log& log, const DeskewOptions& options = {},
 }
 
 bool is_same(const Log& a, const Log& b) {
-  return std::equal(a.positions.begin(), a.positions.end(), b.positions.begin(), b.positions.end(),
-                    [](const Position& p, const Position& q) {
-                      return p.sub_scans[0].ranges_m == q.sub_scans[0].ranges_m &&
-                             p.sub_scans[0].beam_angles_rad == q.sub_scans[0].beam_angles_rad;
-                    });
+  return std::equal(a.scans.begin(), a.scans.end(), b.scans.begin(), b.scans.end(), [](const Scan& p, const Scan& q) {
+    return p.sweeps[0].ranges_m == q.sweeps[0].ranges_m && p.sweeps[0].beam_angles_rad == q.sweeps[0].beam_angles_rad;
+  });
 }
 
 RollingLaser noisy() {
@@ -108,9 +106,9 @@ TEST(Deskew, AClockwiseLaserInAMirroredWorldIsTheMirrorImage) {
   const Log log = straightened_log(test::bent_log(world, test::swinging(30 * kDegree, 0.2), 12, laser), on).log;
   laser.clockwise = true;
   const Log other = straightened_log(test::bent_log(mirrored, test::swinging(-30 * kDegree, 0.2), 12, laser), on).log;
-  for (std::size_t i = 0; i < log.positions.size(); ++i) {
-    const SubScan& a = log.positions[i].sub_scans[0];
-    const SubScan& b = other.positions[i].sub_scans[0];
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    const Sweep& a = log.scans[i].sweeps[0];
+    const Sweep& b = other.scans[i].sweeps[0];
     ASSERT_EQ(a.ranges_m.size(), b.ranges_m.size());
     for (std::size_t k = 0; k < a.ranges_m.size(); ++k) {
       EXPECT_NEAR(a.beam_angle_rad(k), -b.beam_angle_rad(k), 1e-3);
@@ -122,8 +120,8 @@ TEST(Deskew, AClockwiseLaserInAMirroredWorldIsTheMirrorImage) {
 TEST(Deskew, BeamsThatAreListedFromLastToFirstAreKnownByThat) {
   const test::World world = test::cluttered_room(5);
   Log log = test::bent_log(world, test::swinging(30 * kDegree, 0.2), kSweeps, noisy());
-  for (Position& position : log.positions) {
-    SubScan& scan = position.sub_scans[0];
+  for (Scan& position : log.scans) {
+    Sweep& scan = position.sweeps[0];
     std::reverse(scan.ranges_m.begin(), scan.ranges_m.end());
     scan.first_angle_rad = scan.beam_angle_rad(scan.ranges_m.size() - 1);
     scan.angle_step_rad = -scan.angle_step_rad;
@@ -139,7 +137,7 @@ TEST(Deskew, TimesThatTheLogTellsAreUsed) {
   laser.sweep_share = 0.6;
   laser.view_rad = 240 * kDegree;
   Log log = test::bent_log(world, test::swinging(40 * kDegree, 0.2), kSweeps, laser);
-  for (Position& position : log.positions) position.sub_scans[0].beam_time_step_s = laser.beam_step_s();
+  for (Scan& position : log.scans) position.sweeps[0].beam_time_step_s = laser.beam_step_s();
   const Straightened result = straightened_log(log);
   EXPECT_TRUE(result.verdicts[0].told);
   EXPECT_NEAR(result.verdicts[0].sweep_time_s, 0.06, 1e-3);
@@ -150,7 +148,7 @@ TEST(Deskew, TimesThatCannotBeAreTold) {
   const test::World world = test::cluttered_room(5);
   for (const double lie_s : {1e-9, 1.0}) {
     Log log = test::bent_log(world, test::swinging(30 * kDegree, 0.2), kSweeps, noisy());
-    for (Position& position : log.positions) position.sub_scans[0].beam_time_step_s = lie_s;
+    for (Scan& position : log.scans) position.sweeps[0].beam_time_step_s = lie_s;
     const Straightened result = straightened_log(log);
     ASSERT_EQ(result.warnings.size(), 1U);
     EXPECT_THAT(result.warnings[0], HasSubstr("sweeps are 0.1 s apart"));
@@ -164,7 +162,7 @@ TEST(Deskew, TimesThatScansContradictAreTold) {
   RollingLaser at_once = noisy();
   at_once.sweep_share = 0.0;
   Log log = test::bent_log(world, test::swinging(30 * kDegree, 0.2), kSweeps, at_once);
-  for (Position& position : log.positions) position.sub_scans[0].beam_time_step_s = noisy().beam_step_s();
+  for (Scan& position : log.scans) position.sweeps[0].beam_time_step_s = noisy().beam_step_s();
   const Straightened result = straightened_log(log);
   EXPECT_FALSE(result.verdicts[0].straightened);
   ASSERT_EQ(result.warnings.size(), 1U);
@@ -174,9 +172,9 @@ TEST(Deskew, TimesThatScansContradictAreTold) {
 TEST(Deskew, TimesThatTheLogTellsNeedNoProof) {
   const test::World world = test::cluttered_room(5);
   Log log = test::bent_log(world, test::swinging(30 * kDegree, 0.2), 12, noisy());
-  for (Position& position : log.positions) position.sub_scans[0].beam_time_step_s = noisy().beam_step_s();
+  for (Scan& position : log.scans) position.sweeps[0].beam_time_step_s = noisy().beam_step_s();
   EXPECT_TRUE(straightened_log(log).verdicts[0].straightened);
-  for (Position& position : log.positions) position.sub_scans[0].beam_time_step_s = 0.0;
+  for (Scan& position : log.scans) position.sweeps[0].beam_time_step_s = 0.0;
   EXPECT_FALSE(straightened_log(log).verdicts[0].straightened);
 }
 
@@ -199,8 +197,8 @@ TEST(Deskew, StampsThatAreNoClockAreNotUsed) {
   on.mode = Deskew::kOn;
   for (const double step_s : {0.0, -0.1, 5.0, std::nan("")}) {
     Log other = log;
-    for (std::size_t i = 0; i < log.positions.size(); ++i) {
-      other.positions[i].timestamp_s = step_s * static_cast<double>(i);
+    for (std::size_t i = 0; i < log.scans.size(); ++i) {
+      other.scans[i].timestamp_s = step_s * static_cast<double>(i);
     }
     const Straightened result = straightened_log(other, on);
     EXPECT_FALSE(result.verdicts[0].straightened) << step_s;
@@ -211,13 +209,13 @@ TEST(Deskew, StampsThatAreNoClockAreNotUsed) {
 TEST(Deskew, AGapEndsAStretchAndFewSweepsTellNothing) {
   const test::World world = test::cluttered_room(5);
   Log log = test::bent_log(world, test::swinging(30 * kDegree, 0.2), 43, noisy());
-  for (std::size_t i = 20; i < 23; ++i) log.positions[i].timestamp_s += 10.0;
-  for (std::size_t i = 23; i < 43; ++i) log.positions[i].timestamp_s += 20.0;
+  for (std::size_t i = 20; i < 23; ++i) log.scans[i].timestamp_s += 10.0;
+  for (std::size_t i = 23; i < 43; ++i) log.scans[i].timestamp_s += 20.0;
   DeskewOptions options;
   options.sweep_time_s = 0.1;
   const Log straight = straightened_log(log, options).log;
   for (std::size_t i = 0; i < 43; ++i) {
-    const bool is_straight = !straight.positions[i].sub_scans[0].is_evenly_spaced();
+    const bool is_straight = !straight.scans[i].sweeps[0].is_evenly_spaced();
     EXPECT_EQ(is_straight, i < 20 || i >= 23) << i;
   }
 }
@@ -254,8 +252,8 @@ TEST(Deskew, AnEmptyLogAndScansWithoutReturnsAreNoTrouble) {
   DeskewOptions on;
   on.mode = Deskew::kOn;
   EXPECT_TRUE(is_same(straightened_log(log, on).log, log));
-  for (Position& position : log.positions) position.sub_scans.clear();
-  EXPECT_EQ(straightened_log(log, on).log.positions.size(), 12U);
+  for (Scan& position : log.scans) position.sweeps.clear();
+  EXPECT_EQ(straightened_log(log, on).log.scans.size(), 12U);
 }
 
 /// Any scans go together if each is bent to a line: by a motion against its beams.
@@ -268,8 +266,8 @@ TEST(Deskew, ScansOfPlacesFarApartAreNoSweeps) {
     test::Scanner scanner;
     scanner.num_beams = 180;
     scanner.view_rad = kPi;
-    log.positions.push_back(test::scan_of(world, {1.5 * unit(rng), 1.5 * unit(rng), 0.7 * i}, scanner, rng));
-    log.positions.back().timestamp_s = 0.5 * i;
+    log.scans.push_back(test::scan_of(world, {1.5 * unit(rng), 1.5 * unit(rng), 0.7 * i}, scanner, rng));
+    log.scans.back().timestamp_s = 0.5 * i;
   }
   const Straightened result = straightened_log(log);
   EXPECT_FALSE(result.verdicts[0].straightened);
@@ -279,9 +277,9 @@ TEST(Deskew, ScansOfPlacesFarApartAreNoSweeps) {
 TEST(Deskew, AThinnedRecordingIsJudgedByTheTurnsOfItsLaser) {
   const test::World world = test::cluttered_room(5);
   Log thinned = test::bent_log(world, test::swinging(20 * kDegree, 0.1), 4 * kSweeps, noisy());
-  std::vector<Position> kept;
-  for (std::size_t i = 0; i < thinned.positions.size(); i += 2) kept.push_back(thinned.positions[i]);
-  thinned.positions = kept;
+  std::vector<Scan> kept;
+  for (std::size_t i = 0; i < thinned.scans.size(); i += 2) kept.push_back(thinned.scans[i]);
+  thinned.scans = kept;
   Listener listener;
   std::vector<SweepVerdict> verdicts;
   const Log straight = straightened(thinned, {}, {}, 2, 1, listener, verdicts);
@@ -293,12 +291,12 @@ TEST(Deskew, AThinnedRecordingIsJudgedByTheTurnsOfItsLaser) {
 /// One time in another unit must cost neither memory nor the rest of the log.
 TEST(Deskew, ABeamThatWasSentFarFromItsSweepEndsARun) {
   Log log = test::bent_log(test::cluttered_room(5), test::swinging(30 * kDegree, 0.2), kSweeps, noisy());
-  for (Position& position : log.positions) position.sub_scans[0].beam_time_step_s = 0.1 / 120;
-  log.positions[20].sub_scans[0].start_s = 1e6;
+  for (Scan& position : log.scans) position.sweeps[0].beam_time_step_s = 0.1 / 120;
+  log.scans[20].sweeps[0].start_s = 1e6;
   const Straightened result = straightened_log(log);
   EXPECT_TRUE(result.verdicts[0].straightened);
   EXPECT_GT(result.verdicts[0].num_sweeps, kSweeps / 2);
-  EXPECT_EQ(result.log.positions[20].sub_scans[0].ranges_m, log.positions[20].sub_scans[0].ranges_m);
+  EXPECT_EQ(result.log.scans[20].sweeps[0].ranges_m, log.scans[20].sweeps[0].ranges_m);
 }
 
 /// Several echoes of one beam have one angle before, and nearly the same angle after.
@@ -306,9 +304,9 @@ TEST(Deskew, EchoesOfOneBeamStayPlausible) {
   Log log = test::bent_log(test::cluttered_room(5), test::swinging(30 * kDegree, 0.2), 20, noisy());
   DeskewOptions on;
   on.mode = Deskew::kOn;
-  for (Position& position : log.positions) {
-    SubScan& scan = position.sub_scans[0];
-    SubScan echoes = scan;
+  for (Scan& position : log.scans) {
+    Sweep& scan = position.sweeps[0];
+    Sweep echoes = scan;
     echoes.ranges_m.clear();
     std::vector<double> angles_rad;
     for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) {
@@ -323,7 +321,7 @@ TEST(Deskew, EchoesOfOneBeamStayPlausible) {
   }
   const Straightened result = straightened_log(log, on);
   EXPECT_TRUE(result.verdicts[0].straightened);
-  for (const Position& position : result.log.positions) EXPECT_EQ(implausibility(position), "");
+  for (const Scan& position : result.log.scans) EXPECT_EQ(implausibility(position), "");
 }
 
 TEST(ChanceOfGains, IsThatOfTheTablesOfTheSignedRankTest) {

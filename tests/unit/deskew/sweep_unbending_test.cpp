@@ -18,9 +18,9 @@ constexpr double kRounding_m = 1e-5;  // of ranges as floats
 
 /// By the exact motion.
 void unbend(Log& log, const test::Motion& world_from_laser, const RollingLaser& laser) {
-  for (Position& position : log.positions) {
+  for (Scan& position : log.scans) {
     const double start_s = position.timestamp_s;
-    for (SubScan& scan : position.sub_scans) {
+    for (Sweep& scan : position.sweeps) {
       scan = unbent(scan, {}, [&](std::size_t beam) {
         return inverse(world_from_laser(start_s)) *
                world_from_laser(start_s + static_cast<double>(beam) * laser.beam_step_s());
@@ -49,8 +49,8 @@ TEST(Unbent, AMountedAndUpsideDownLaserSeesTheSame) {
   const RollingLaser laser;
   Log log = test::bent_log(
       world, [&](double time_s) { return robot(time_s) * robot_from_sensor; }, 6, laser);
-  for (Position& position : log.positions) {
-    SubScan& scan = position.sub_scans[0];
+  for (Scan& position : log.scans) {
+    Sweep& scan = position.sweeps[0];
     // What runs counterclockwise above runs clockwise for a laser that hangs from the ceiling.
     scan.first_angle_rad = -scan.first_angle_rad;
     scan.angle_step_rad = -scan.angle_step_rad;
@@ -71,24 +71,24 @@ TEST(Unbent, WhatGoesRoundMoreThanOnceIsSeenOnce) {
   };
   Log more = test::bent_log(world, turning(1.0), 1, laser);
   unbend(more, turning(1.0), laser);
-  const SubScan& scan = more.positions[0].sub_scans[0];
+  const Sweep& scan = more.scans[0].sweeps[0];
   const double expected = laser.num_beams * 360.0 / 410.0;
   EXPECT_NEAR(static_cast<double>(scan.ranges_m.size()), expected, 2.0);
   EXPECT_LE(scan.beam_angles_rad.back() - scan.beam_angles_rad.front(), 2 * kPi);
   Log less = test::bent_log(world, turning(-1.0), 1, laser);
   unbend(less, turning(-1.0), laser);
-  EXPECT_EQ(less.positions[0].sub_scans[0].ranges_m.size(), static_cast<std::size_t>(laser.num_beams));
+  EXPECT_EQ(less.scans[0].sweeps[0].ranges_m.size(), static_cast<std::size_t>(laser.num_beams));
 }
 
 TEST(Unbent, BeamsAreSortedAndThoseWithoutReturnTurned) {
-  SubScan scan;
+  Sweep scan;
   scan.first_angle_rad = -0.2;
   scan.angle_step_rad = 0.1;
   scan.max_range_m = 10.0;
   scan.ranges_m = {0.5F, std::numeric_limits<float>::quiet_NaN(), 10.0F, 3.0F};
   scan.intensities = {1.0F, 2.0F, 3.0F, 4.0F};
   // Sideways by a metre at the first beam: what is near there is seen in quite another direction.
-  const SubScan straight = unbent(scan, {}, [](std::size_t beam) {
+  const Sweep straight = unbent(scan, {}, [](std::size_t beam) {
     return beam == 0 ? Pose2{0.0, 1.0, 0.0} : Pose2{0.0, 0.0, 0.01 * static_cast<double>(beam)};
   });
   ASSERT_EQ(straight.ranges_m.size(), 4U);
@@ -102,7 +102,7 @@ TEST(Unbent, BeamsAreSortedAndThoseWithoutReturnTurned) {
 }
 
 TEST(MostBent, IsHowFarAHitMoves) {
-  SubScan scan;
+  Sweep scan;
   scan.angle_step_rad = 0.1;
   scan.max_range_m = 10.0;
   scan.ranges_m = {2.0F, 4.0F, 10.0F};

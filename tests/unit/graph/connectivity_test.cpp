@@ -61,7 +61,7 @@ void on_random_graphs(const Check& check) {
 
 TEST(ConnectedParts, AreThoseOfAFloodFill) {
   on_random_graphs([](std::size_t num_nodes, const std::vector<PoseConstraint>& edges) {
-    const std::vector<std::size_t> part = connected_parts(num_nodes, edges);
+    const std::vector<std::size_t> part = connected_components(num_nodes, edges);
     ASSERT_EQ(part.size(), num_nodes);
     for (std::size_t node = 0; node < num_nodes; ++node) {
       const std::vector<bool> reached = flooded(num_nodes, edges, node, edges.size());
@@ -76,9 +76,9 @@ TEST(ConnectedParts, DoNotDependOnTheOrderOfTheConstraints) {
   std::mt19937 rng(2);
   for (int round = 0; round < 50; ++round) {
     std::vector<PoseConstraint> edges = random_multigraph(rng, 30, 20);
-    const std::vector<std::size_t> part = connected_parts(30, edges);
+    const std::vector<std::size_t> part = connected_components(30, edges);
     std::shuffle(edges.begin(), edges.end(), rng);
-    EXPECT_EQ(connected_parts(30, edges), part);
+    EXPECT_EQ(connected_components(30, edges), part);
   }
 }
 
@@ -86,7 +86,7 @@ TEST(LoneConstraints, AreThoseWithoutWhichTheirNodesFallApart) {
   int num_lone = 0;
   int num_held = 0;
   on_random_graphs([&](std::size_t num_nodes, const std::vector<PoseConstraint>& edges) {
-    const std::vector<bool> lone = lone_constraints(num_nodes, edges);
+    const std::vector<bool> lone = bridge_edges(num_nodes, edges);
     ASSERT_EQ(lone.size(), edges.size());
     for (std::size_t e = 0; e < edges.size(); ++e) {
       EXPECT_EQ(lone[e], !flooded(num_nodes, edges, edges[e].a, e)[edges[e].b]) << "edge " << e;
@@ -98,27 +98,27 @@ TEST(LoneConstraints, AreThoseWithoutWhichTheirNodesFallApart) {
 }
 
 TEST(LoneConstraints, OfParallelOnesNoneIsLone) {
-  EXPECT_THAT(lone_constraints(3, {edge(0, 1), edge(1, 2)}), ElementsAre(true, true));
-  EXPECT_THAT(lone_constraints(3, {edge(0, 1), edge(1, 2), edge(1, 0)}), ElementsAre(false, true, false));
-  EXPECT_THAT(lone_constraints(3, {edge(0, 1), edge(1, 2), edge(0, 2)}), ElementsAre(false, false, false));
+  EXPECT_THAT(bridge_edges(3, {edge(0, 1), edge(1, 2)}), ElementsAre(true, true));
+  EXPECT_THAT(bridge_edges(3, {edge(0, 1), edge(1, 2), edge(1, 0)}), ElementsAre(false, true, false));
+  EXPECT_THAT(bridge_edges(3, {edge(0, 1), edge(1, 2), edge(0, 2)}), ElementsAre(false, false, false));
 }
 
 TEST(GraphParts, OfALongChainNeedNoDeepStack) {
   constexpr std::size_t kMany = 300000;
   std::vector<PoseConstraint> chain;
   for (std::size_t i = 0; i + 1 < kMany; ++i) chain.push_back(edge(i, i + 1));
-  EXPECT_EQ(lone_constraints(kMany, chain), std::vector<bool>(kMany - 1, true));
-  EXPECT_EQ(connected_parts(kMany, chain), std::vector<std::size_t>(kMany, 0));
+  EXPECT_EQ(bridge_edges(kMany, chain), std::vector<bool>(kMany - 1, true));
+  EXPECT_EQ(connected_components(kMany, chain), std::vector<std::size_t>(kMany, 0));
   chain.push_back(edge(kMany - 1, 0));
-  EXPECT_EQ(lone_constraints(kMany, chain), std::vector<bool>(kMany, false));
+  EXPECT_EQ(bridge_edges(kMany, chain), std::vector<bool>(kMany, false));
 }
 
 TEST(GraphParts, RefuseNodesThatDoNotExist) {
-  EXPECT_TRUE(connected_parts(0, {}).empty());
-  EXPECT_TRUE(lone_constraints(0, {}).empty());
+  EXPECT_TRUE(connected_components(0, {}).empty());
+  EXPECT_TRUE(bridge_edges(0, {}).empty());
   for (const PoseConstraint& bad : {edge(0, 2), edge(2, 0), edge(1, 1)}) {
-    EXPECT_THROW(connected_parts(2, {bad}), std::invalid_argument);
-    EXPECT_THROW(lone_constraints(2, {bad}), std::invalid_argument);
+    EXPECT_THROW(connected_components(2, {bad}), std::invalid_argument);
+    EXPECT_THROW(bridge_edges(2, {bad}), std::invalid_argument);
   }
 }
 

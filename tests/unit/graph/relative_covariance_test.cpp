@@ -51,7 +51,7 @@ class AlongAWay : public ::testing::TestWithParam<unsigned> {};
 TEST_P(AlongAWay, IsTheSpreadOfManyWays) {
   const Way way(GetParam());
   const std::size_t last = way.map.size() - 1;
-  const Eigen::Matrix3d found = PathCovariance(way.map, way.constraints).between(0, last);
+  const Eigen::Matrix3d found = RelativeCovariance(way.map, way.constraints).between(0, last);
   const Pose2 expected = inverse(way.map[0]) * way.map[last];
   std::mt19937 rng(11);
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
@@ -77,35 +77,35 @@ TEST_P(AlongAWay, IsTheSpreadOfManyWays) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, AlongAWay, ::testing::Values(1U, 2U, 3U));
 
-TEST(PathCovariance, IsThatOfTheConstraintBetweenNeighbours) {
+TEST(RelativeCovariance, IsThatOfTheConstraintBetweenNeighbours) {
   const Way way(1);
   const PoseConstraint& c = way.constraints[0];
   ASSERT_EQ(c.a, 0U);
-  EXPECT_TRUE(PathCovariance(way.map, way.constraints).between(c.a, c.b).isApprox(c.covariance, 1e-9));
+  EXPECT_TRUE(RelativeCovariance(way.map, way.constraints).between(c.a, c.b).isApprox(c.covariance, 1e-9));
 }
 
-TEST(PathCovariance, TakesTheBetterWay) {
+TEST(RelativeCovariance, TakesTheBetterWay) {
   const std::vector<Pose2> map{{}, {1, 0, 0}, {2, 0, 0}};
   std::vector<PoseConstraint> constraints{between(map, 0, 1, diagonal(0.01, 0.01, 0.001)),
                                           between(map, 1, 2, diagonal(0.01, 0.01, 0.001)),
                                           between(map, 0, 2, diagonal(0.5, 0.5, 0.1))};
-  EXPECT_LT(PathCovariance(map, constraints).between(0, 2)(0, 0), 0.001);
+  EXPECT_LT(RelativeCovariance(map, constraints).between(0, 2)(0, 0), 0.001);
   constraints[2].covariance = diagonal(0.005, 0.005, 0.0005);
-  EXPECT_TRUE(PathCovariance(map, constraints).between(0, 2).isApprox(constraints[2].covariance, 1e-9));
+  EXPECT_TRUE(RelativeCovariance(map, constraints).between(0, 2).isApprox(constraints[2].covariance, 1e-9));
 }
 
-TEST(PathCovariance, OfNodesThatNothingJoinsIsNotFinite) {
+TEST(RelativeCovariance, OfNodesThatNothingJoinsIsNotFinite) {
   const std::vector<Pose2> map{{}, {1, 0, 0}, {2, 0, 0}};
   const std::vector<PoseConstraint> constraints{between(map, 0, 1, diagonal(0.01, 0.01, 0.001))};
-  const PathCovariance covariance(map, constraints);
+  const RelativeCovariance covariance(map, constraints);
   EXPECT_FALSE(covariance.between(0, 2).allFinite());
   EXPECT_TRUE(covariance.between(1, 1).isZero());
 }
 
-TEST(PathCovariance, RefusesNodesThatDoNotExist) {
+TEST(RelativeCovariance, RefusesNodesThatDoNotExist) {
   const std::vector<Pose2> map{{}};
   const std::vector<PoseConstraint> constraints{{0, 1, {}, Eigen::Matrix3d::Identity(), 0.0}};
-  EXPECT_THROW(PathCovariance(map, constraints), std::invalid_argument);
+  EXPECT_THROW(RelativeCovariance(map, constraints), std::invalid_argument);
 }
 
 }  // namespace

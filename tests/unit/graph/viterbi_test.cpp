@@ -12,36 +12,36 @@ namespace {
 
 constexpr double kFullMargin = 20.0;
 
-ChoiceChain random_chain(std::mt19937& rng, std::size_t num_links, std::size_t most_alternatives, double spread) {
+ViterbiChain random_chain(std::mt19937& rng, std::size_t num_links, std::size_t most_alternatives, double spread) {
   std::uniform_real_distribution<double> value(-spread, spread);
   std::uniform_int_distribution<std::size_t> count(1, most_alternatives);
-  ChoiceChain chain;
+  ViterbiChain chain;
   chain.scores.resize(num_links);
-  chain.bonus.resize(num_links);
+  chain.transition_scores.resize(num_links);
   for (std::vector<double>& scores : chain.scores) {
     scores.resize(count(rng));
     for (double& score : scores) score = value(rng);
   }
   for (std::size_t link = 0; link + 1 < num_links; ++link) {
-    chain.bonus[link].assign(chain.scores[link].size(), std::vector<double>(chain.scores[link + 1].size()));
-    for (std::vector<double>& row : chain.bonus[link]) {
-      for (double& bonus : row) bonus = value(rng);
+    chain.transition_scores[link].assign(chain.scores[link].size(), std::vector<double>(chain.scores[link + 1].size()));
+    for (std::vector<double>& row : chain.transition_scores[link]) {
+      for (double& transition_scores : row) transition_scores = value(rng);
     }
   }
   return chain;
 }
 
-double sum_of(const ChoiceChain& chain, const std::vector<std::size_t>& taken) {
+double sum_of(const ViterbiChain& chain, const std::vector<std::size_t>& taken) {
   double sum = 0.0;
   for (std::size_t link = 0; link < taken.size(); ++link) {
     sum += chain.scores[link][taken[link]];
-    if (link + 1 < taken.size()) sum += chain.bonus[link][taken[link]][taken[link + 1]];
+    if (link + 1 < taken.size()) sum += chain.transition_scores[link][taken[link]][taken[link + 1]];
   }
   return sum;
 }
 
 /// The next combination of alternatives, as an odometer counts; false after the last.
-bool advance(const ChoiceChain& chain, std::vector<std::size_t>& taken) {
+bool advance(const ViterbiChain& chain, std::vector<std::size_t>& taken) {
   for (std::size_t link = 0; link < taken.size(); ++link) {
     if (++taken[link] < chain.scores[link].size()) return true;
     taken[link] = 0;
@@ -50,7 +50,7 @@ bool advance(const ChoiceChain& chain, std::vector<std::size_t>& taken) {
 }
 
 /// The best choices and their margins, from the sums of all combinations.
-std::vector<Choice> by_enumeration(const ChoiceChain& chain) {
+std::vector<Choice> by_enumeration(const ViterbiChain& chain) {
   constexpr double kNever = -std::numeric_limits<double>::infinity();
   std::vector<std::vector<double>> best;  // [link][alternative]: of the chains with it
   for (const std::vector<double>& scores : chain.scores) best.emplace_back(scores.size(), kNever);
@@ -64,11 +64,11 @@ std::vector<Choice> by_enumeration(const ChoiceChain& chain) {
   std::vector<Choice> choices;
   for (const std::vector<double>& sums : best) {
     Choice choice;
-    choice.alternative = static_cast<std::size_t>(std::max_element(sums.begin(), sums.end()) - sums.begin());
+    choice.candidate = static_cast<std::size_t>(std::max_element(sums.begin(), sums.end()) - sums.begin());
     choice.margin = kFullMargin;
     for (std::size_t i = 0; i < sums.size(); ++i) {
-      choice.behind.push_back(sums[choice.alternative] - sums[i]);
-      if (i != choice.alternative) choice.margin = std::min(choice.margin, choice.behind.back());
+      choice.behind.push_back(sums[choice.candidate] - sums[i]);
+      if (i != choice.candidate) choice.margin = std::min(choice.margin, choice.behind.back());
     }
     choices.push_back(choice);
   }
@@ -80,12 +80,12 @@ TEST(BestChoices, AreThoseOfAllCombinations) {
   for (int round = 0; round < 500; ++round) {
     const std::size_t num_links = 1 + static_cast<std::size_t>(round) % 6;
     const double spread = round % 3 == 0 ? 30.0 : 3.0;  // some beyond the full margin
-    const ChoiceChain chain = random_chain(rng, num_links, 4, spread);
+    const ViterbiChain chain = random_chain(rng, num_links, 4, spread);
     const std::vector<Choice> expected = by_enumeration(chain);
-    const std::vector<Choice> found = best_choices(chain, kFullMargin);
+    const std::vector<Choice> found = viterbi(chain, kFullMargin);
     ASSERT_EQ(found.size(), expected.size());
     for (std::size_t link = 0; link < found.size(); ++link) {
-      EXPECT_EQ(found[link].alternative, expected[link].alternative) << round;
+      EXPECT_EQ(found[link].candidate, expected[link].candidate) << round;
       EXPECT_NEAR(found[link].margin, expected[link].margin, 1e-9) << round;
       EXPECT_THAT(found[link].behind, ::testing::Pointwise(::testing::DoubleNear(1e-9), expected[link].behind));
     }
@@ -95,9 +95,9 @@ TEST(BestChoices, AreThoseOfAllCombinations) {
 TEST(BestChoices, TogetherMakeOneChainOfTheLargestSum) {
   std::mt19937 rng(2);
   for (int round = 0; round < 200; ++round) {
-    const ChoiceChain chain = random_chain(rng, 5, 4, 3.0);
+    const ViterbiChain chain = random_chain(rng, 5, 4, 3.0);
     std::vector<std::size_t> found;
-    for (const Choice& choice : best_choices(chain, kFullMargin)) found.push_back(choice.alternative);
+    for (const Choice& choice : viterbi(chain, kFullMargin)) found.push_back(choice.candidate);
     double largest = -std::numeric_limits<double>::infinity();
     std::vector<std::size_t> taken(5, 0);
     do largest = std::max(largest, sum_of(chain, taken));
@@ -107,26 +107,26 @@ TEST(BestChoices, TogetherMakeOneChainOfTheLargestSum) {
 }
 
 TEST(BestChoices, OfATieHaveNoMarginAndTakeTheFirst) {
-  ChoiceChain chain;
+  ViterbiChain chain;
   chain.scores = {{1.0, 1.0, 0.5}};
-  chain.bonus.resize(1);
-  const std::vector<Choice> choices = best_choices(chain, kFullMargin);
+  chain.transition_scores.resize(1);
+  const std::vector<Choice> choices = viterbi(chain, kFullMargin);
   ASSERT_EQ(choices.size(), 1U);
-  EXPECT_EQ(choices[0].alternative, 0U);
+  EXPECT_EQ(choices[0].candidate, 0U);
   EXPECT_EQ(choices[0].margin, 0.0);
 }
 
 TEST(BestChoices, WithoutAnAlternativeHaveTheFullMargin) {
-  ChoiceChain chain;
+  ViterbiChain chain;
   chain.scores = {{-5.0}};
-  chain.bonus.resize(1);
-  EXPECT_EQ(best_choices(chain, 7.0)[0].margin, 7.0);
-  EXPECT_TRUE(best_choices({}, 7.0).empty());
+  chain.transition_scores.resize(1);
+  EXPECT_EQ(viterbi(chain, 7.0)[0].margin, 7.0);
+  EXPECT_TRUE(viterbi({}, 7.0).empty());
 }
 
 TEST(BestChoices, OfALongChainNeedNoTime) {
   std::mt19937 rng(3);
-  EXPECT_EQ(best_choices(random_chain(rng, 20000, 7, 3.0), kFullMargin).size(), 20000U);
+  EXPECT_EQ(viterbi(random_chain(rng, 20000, 7, 3.0), kFullMargin).size(), 20000U);
 }
 
 }  // namespace

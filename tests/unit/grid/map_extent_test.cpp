@@ -17,15 +17,15 @@ using test::Scanner;
 using test::walk_through;
 using test::World;
 
-GridMap drawn(const PlacedLog& walk, bool draw_all = false) {
-  GridMapOptions options;
+OccupancyGrid drawn(const PlacedLog& walk, bool draw_all = false) {
+  OccupancyGridOptions options;
   options.resolution_m = 0.1;
   options.draw_all = draw_all;
-  return build_grid_map(walk.log, walk.placed, {}, options);
+  return build_occupancy_grid(walk.log, walk.placed, {}, options);
 }
 
-double width_m(const GridMap& map) { return map.width_cells * map.resolution_m; }
-double height_m(const GridMap& map) { return map.height_cells * map.resolution_m; }
+double width_m(const OccupancyGrid& map) { return map.width_cells * map.resolution_m; }
+double height_m(const OccupancyGrid& map) { return map.height_cells * map.resolution_m; }
 
 /// Lasers whose log does not say a maximum.
 Scanner far_scanner(int num_beams = 180) {
@@ -36,7 +36,7 @@ Scanner far_scanner(int num_beams = 180) {
 }
 
 float& reading(PlacedLog& walk, std::size_t position, std::size_t beam) {
-  return walk.log.positions.at(position).sub_scans.at(0).ranges_m.at(beam);
+  return walk.log.scans.at(position).sweeps.at(0).ranges_m.at(beam);
 }
 
 World box_room(double half_x_m, double half_y_m) {
@@ -50,8 +50,8 @@ PlacedLog office_walk(int num_scans) {
 }
 
 void expect_whole(const PlacedLog& walk) {
-  const GridMap map = drawn(walk);
-  const GridMap all = drawn(walk, true);
+  const OccupancyGrid map = drawn(walk);
+  const OccupancyGrid all = drawn(walk, true);
   EXPECT_EQ(map.num_outside, 0U);
   EXPECT_GT(map.num_returns, 0U);
   EXPECT_EQ(map.width_cells, all.width_cells);
@@ -62,10 +62,10 @@ TEST(MapExtent, HoldsAllOfARoom) { expect_whole(office_walk(20)); }
 
 TEST(MapExtent, OneFalseReadingMakesNoPictureOf18000Pixels) {
   PlacedLog walk = office_walk(20);
-  const GridMap before = drawn(walk);
+  const OccupancyGrid before = drawn(walk);
   for (const float far_m : {40.0F, 900.0F}) {
     reading(walk, 7, 31) = far_m;
-    const GridMap map = drawn(walk);
+    const OccupancyGrid map = drawn(walk);
     EXPECT_EQ(map.width_cells, before.width_cells) << far_m;
     EXPECT_EQ(map.height_cells, before.height_cells) << far_m;
     EXPECT_EQ(map.origin_m, before.origin_m) << far_m;
@@ -82,9 +82,9 @@ TEST(MapExtent, ABeamThatEndsOutsideClearsUpToTheRim) {
     if (i != 4) reading(walk, i, 90) = std::numeric_limits<float>::quiet_NaN();
   }
   reading(walk, 4, 90) = 900.0F;
-  const GridMap map = drawn(walk);
+  const OccupancyGrid map = drawn(walk);
   EXPECT_EQ(map.num_outside, 1U);
-  const double angle_rad = walk.log.positions[4].sub_scans[0].beam_angle_rad(90);
+  const double angle_rad = walk.log.scans[4].sweeps[0].beam_angle_rad(90);
   for (double along_m = 0.5; along_m < 5.3; along_m += 0.2) {
     const Eigen::Vector2i pixel = map.pixel_at(Point2(-0.05, 0.05) + rotate({along_m, 0.0}, angle_rad));
     EXPECT_GT(map.grey.at(static_cast<std::size_t>(pixel.y() * map.width_cells + pixel.x())), 129) << along_m;
@@ -95,12 +95,12 @@ TEST(MapExtent, FalseReadingsInEachScanAreLeftOutWhereverTheyEnd) {
   std::mt19937 rng(5);
   std::uniform_int_distribution<std::size_t> any_beam(0, 179);
   PlacedLog anywhere = office_walk(200);
-  const GridMap before = drawn(anywhere);
+  const OccupancyGrid before = drawn(anywhere);
   for (std::size_t i = 0; i < 200; ++i) reading(anywhere, i, any_beam(rng)) = 900.0F;
   PlacedLog same_beam = office_walk(200);
   for (std::size_t i = 0; i < 200; ++i) reading(same_beam, i, 17) = 900.0F;
   for (const PlacedLog* walk : {&anywhere, &same_beam}) {
-    const GridMap map = drawn(*walk);
+    const OccupancyGrid map = drawn(*walk);
     EXPECT_EQ(map.num_outside, 200U);
     EXPECT_EQ(map.width_cells, before.width_cells);
     EXPECT_EQ(map.height_cells, before.height_cells);
@@ -120,12 +120,12 @@ TEST(MapExtent, AFewBeamsThroughAWindowAreLeftOutAndAHallBehindADoorIsNot) {
   window.push_back({{5.0, 0.15}, {5.0, 4.0}});
   World hall = window;
   window.push_back({{120.0, -40.0}, {120.0, 40.0}});
-  const GridMap small = drawn(walk_through(window, {-3.0, 2.0, 0.0},
-                                           {
-                                               -1.0,
-                                               0.5,
-                                           },
-                                           12, far_scanner()));
+  const OccupancyGrid small = drawn(walk_through(window, {-3.0, 2.0, 0.0},
+                                                 {
+                                                     -1.0,
+                                                     0.5,
+                                                 },
+                                                 12, far_scanner()));
   EXPECT_LT(width_m(small), 15.0);
   EXPECT_GT(small.num_outside, 0U);
   EXPECT_LT(small.num_outside, small.num_returns / 20);
@@ -182,12 +182,12 @@ TEST(MapExtent, AStraightWayHasAnExtent) {
 
 TEST(MapExtent, WhatContradictsTheMapIsNoSupportForFarReturns) {
   PlacedLog walk = office_walk(40);
-  const GridMap before = drawn(walk);
+  const OccupancyGrid before = drawn(walk);
   for (std::size_t i = 30; i < 33; ++i) {
     for (std::size_t beam = 50; beam < 110; ++beam) reading(walk, i, beam) = 300.0F;
-    walk.placed[i].agreement.contradicts_map = true;
+    walk.placed[i].consistency.contradicts_map = true;
   }
-  const GridMap map = drawn(walk);
+  const OccupancyGrid map = drawn(walk);
   EXPECT_EQ(map.num_outside, 180U);
   EXPECT_EQ(map.width_cells, before.width_cells);
 }

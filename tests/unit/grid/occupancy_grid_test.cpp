@@ -15,30 +15,30 @@ namespace {
 using testing::HasSubstr;
 
 /// A laser in the middle of the robot that looks forward with three beams: 90 deg right, ahead, 90 deg left.
-SubScan three_beams(float right_m, float ahead_m, float left_m) {
-  SubScan sub_scan;
-  sub_scan.ranges_m = {right_m, ahead_m, left_m};
-  sub_scan.first_angle_rad = -kPi / 2;
-  sub_scan.angle_step_rad = kPi / 2;
-  sub_scan.max_range_m = 10.0;
-  return sub_scan;
+Sweep three_beams(float right_m, float ahead_m, float left_m) {
+  Sweep sweep;
+  sweep.ranges_m = {right_m, ahead_m, left_m};
+  sweep.first_angle_rad = -kPi / 2;
+  sweep.angle_step_rad = kPi / 2;
+  sweep.max_range_m = 10.0;
+  return sweep;
 }
 
-Log log_of(const SubScan& sub_scan) {
+Log log_of(const Sweep& sweep) {
   Log log;
-  log.positions.push_back({1.0, {sub_scan}, std::nullopt, std::nullopt});
+  log.scans.push_back({1.0, {sweep}, std::nullopt, std::nullopt});
   return log;
 }
 
-PlacedPosition placed_at(const Pose2& map_from_robot, std::size_t index = 0) {
+PlacedScan placed_at(const Pose2& map_from_robot, std::size_t index = 0) {
   return {index, 1.0, map_from_robot, {Pose2{}}};
 }
 
-GridMap map_of(const Log& log, const Pose2& map_from_robot, double resolution_m = 0.1) {
-  return build_grid_map(log, {placed_at(map_from_robot)}, ReturnOptions{}, GridMapOptions{resolution_m});
+OccupancyGrid map_of(const Log& log, const Pose2& map_from_robot, double resolution_m = 0.1) {
+  return build_occupancy_grid(log, {placed_at(map_from_robot)}, ReturnOptions{}, OccupancyGridOptions{resolution_m});
 }
 
-int grey_at(const GridMap& map, double x_m, double y_m) {
+int grey_at(const OccupancyGrid& map, double x_m, double y_m) {
   const Eigen::Vector2i pixel = map.pixel_at({x_m, y_m});
   return map.grey.at(static_cast<std::size_t>(pixel.y() * map.width_cells + pixel.x()));
 }
@@ -48,8 +48,8 @@ constexpr int kUnknownHigh = 129;
 
 bool is_unknown(int grey) { return kUnknownLow <= grey && grey <= kUnknownHigh; }
 
-TEST(GridMap, NorthOfTheOriginIsTowardsRowZero) {
-  GridMap map;
+TEST(OccupancyGrid, NorthOfTheOriginIsTowardsRowZero) {
+  OccupancyGrid map;
   map.resolution_m = 0.5;
   map.origin_m = {-1.0, -2.0};
   map.width_cells = 10;
@@ -59,8 +59,8 @@ TEST(GridMap, NorthOfTheOriginIsTowardsRowZero) {
   EXPECT_EQ(map.pixel_at({-1.1, -2.1}), Eigen::Vector2i(-1, 20));
 }
 
-TEST(GridMap, HitsAreDarkTheWayThereIsLightTheRestIsUnknown) {
-  const GridMap map = map_of(log_of(three_beams(1.0F, 2.0F, 3.0F)), {0.05, 0.05, 0.0});
+TEST(OccupancyGrid, HitsAreDarkTheWayThereIsLightTheRestIsUnknown) {
+  const OccupancyGrid map = map_of(log_of(three_beams(1.0F, 2.0F, 3.0F)), {0.05, 0.05, 0.0});
   EXPECT_LT(grey_at(map, 2.05, 0.05), 60);
   EXPECT_LT(grey_at(map, 0.05, -0.95), 60);
   EXPECT_LT(grey_at(map, 0.05, 3.05), 60);
@@ -70,61 +70,61 @@ TEST(GridMap, HitsAreDarkTheWayThereIsLightTheRestIsUnknown) {
   EXPECT_TRUE(is_unknown(grey_at(map, 1.0, 1.0)));
 }
 
-TEST(GridMap, ReadingsThatHitNothingAddNothing) {
+TEST(OccupancyGrid, ReadingsThatHitNothingAddNothing) {
   const float nothing = std::numeric_limits<float>::quiet_NaN();
   for (const float reading : {nothing, 0.0F, -1.0F, 10.0F, std::numeric_limits<float>::infinity()}) {
-    const GridMap with = map_of(log_of(three_beams(1.0F, reading, 3.0F)), {});
-    SubScan without = three_beams(1.0F, 1.0F, 3.0F);
+    const OccupancyGrid with = map_of(log_of(three_beams(1.0F, reading, 3.0F)), {});
+    Sweep without = three_beams(1.0F, 1.0F, 3.0F);
     without.ranges_m[1] = nothing;
     EXPECT_EQ(with.grey, map_of(log_of(without), {}).grey) << reading;
     EXPECT_EQ(with.width_cells, 9) << "one column and four cells of margin on either side, for " << reading;
   }
 }
 
-TEST(GridMap, SubScansStandWhereTheirCorrectionsPutThem) {
+TEST(OccupancyGrid, SubScansStandWhereTheirCorrectionsPutThem) {
   Log log = log_of(three_beams(NAN, 2.0F, NAN));
-  log.positions[0].sub_scans.push_back(three_beams(NAN, 2.0F, NAN));
-  log.positions[0].sub_scans[1].nominal_heading_rad = kPi / 2;
-  PlacedPosition place = placed_at({1.05, 1.05, kPi / 2});
-  place.robot_from_sub_scan = {Pose2{}, Pose2{0.0, 0.5, 0.0}};
-  const GridMap map = build_grid_map(log, {place}, ReturnOptions{}, GridMapOptions{0.1});
+  log.scans[0].sweeps.push_back(three_beams(NAN, 2.0F, NAN));
+  log.scans[0].sweeps[1].nominal_heading_rad = kPi / 2;
+  PlacedScan place = placed_at({1.05, 1.05, kPi / 2});
+  place.robot_from_sweep = {Pose2{}, Pose2{0.0, 0.5, 0.0}};
+  const OccupancyGrid map = build_occupancy_grid(log, {place}, ReturnOptions{}, OccupancyGridOptions{0.1});
   EXPECT_LT(grey_at(map, 1.05, 3.05), 60);   // ahead of a robot that faces north
   EXPECT_LT(grey_at(map, -1.45, 1.05), 60);  // the second looks west, from half a metre to the robot's left
 }
 
-TEST(GridMap, ATiltedLaserIsProjectedAndABeyondLimitOneLeftOut) {
-  SubScan tilted = three_beams(1.0F, 2.0F, 1.0F);
+TEST(OccupancyGrid, ATiltedLaserIsProjectedAndABeyondLimitOneLeftOut) {
+  Sweep tilted = three_beams(1.0F, 2.0F, 1.0F);
   tilted.robot_from_sensor.pitch_rad = 20 * kDegree;
-  const GridMap map = map_of(log_of(tilted), {0.05, 0.05, 0.0});
+  const OccupancyGrid map = map_of(log_of(tilted), {0.05, 0.05, 0.0});
   EXPECT_LT(grey_at(map, 0.05 + 2.0 * std::cos(20 * kDegree), 0.05), 60);
 
   Log log = log_of(three_beams(1.0F, 2.0F, 1.0F));
-  const GridMap alone = map_of(log, {});
-  log.positions[0].sub_scans.push_back(three_beams(3.0F, 3.0F, 3.0F));
-  log.positions[0].sub_scans[1].robot_from_sensor.pitch_rad = 60 * kDegree;
-  PlacedPosition place = placed_at({});
-  place.robot_from_sub_scan = {Pose2{}, Pose2{}};
-  EXPECT_EQ(build_grid_map(log, {place}, ReturnOptions{}, GridMapOptions{0.1}).grey, alone.grey);
+  const OccupancyGrid alone = map_of(log, {});
+  log.scans[0].sweeps.push_back(three_beams(3.0F, 3.0F, 3.0F));
+  log.scans[0].sweeps[1].robot_from_sensor.pitch_rad = 60 * kDegree;
+  PlacedScan place = placed_at({});
+  place.robot_from_sweep = {Pose2{}, Pose2{}};
+  EXPECT_EQ(build_occupancy_grid(log, {place}, ReturnOptions{}, OccupancyGridOptions{0.1}).grey, alone.grey);
 }
 
-TEST(GridMap, AnUpsideDownLaserSeesItsLeftOnTheRight) {
-  SubScan upside_down = three_beams(1.0F, 2.0F, 3.0F);
+TEST(OccupancyGrid, AnUpsideDownLaserSeesItsLeftOnTheRight) {
+  Sweep upside_down = three_beams(1.0F, 2.0F, 3.0F);
   upside_down.robot_from_sensor.roll_rad = kPi;
-  const GridMap map = map_of(log_of(upside_down), {0.05, 0.05, 0.0});
+  const OccupancyGrid map = map_of(log_of(upside_down), {0.05, 0.05, 0.0});
   EXPECT_LT(grey_at(map, 0.05, 1.05), 60);
   EXPECT_LT(grey_at(map, 0.05, -2.95), 60);
 }
 
-TEST(GridMap, IsCroppedToWhatWasSeenOnWholeCells) {
-  const GridMap map = map_of(log_of(three_beams(1.0F, 2.0F, 3.0F)), {100.05, -50.05, 0.0});
+TEST(OccupancyGrid, IsCroppedToWhatWasSeenOnWholeCells) {
+  const OccupancyGrid map = map_of(log_of(three_beams(1.0F, 2.0F, 3.0F)), {100.05, -50.05, 0.0});
   EXPECT_EQ(map.width_cells, 21 + 8);
   EXPECT_EQ(map.height_cells, 41 + 8);
   EXPECT_NEAR(map.origin_m.x(), 100.0 - 0.4, 1e-9);
   EXPECT_NEAR(map.origin_m.y(), -51.1 - 0.4, 1e-9);
 }
 
-TEST(GridMap, RefusesWhatWouldNotFitAndSaysWhatHelps) {
-  SubScan far = three_beams(900.0F, 900.0F, 900.0F);
+TEST(OccupancyGrid, RefusesWhatWouldNotFitAndSaysWhatHelps) {
+  Sweep far = three_beams(900.0F, 900.0F, 900.0F);
   far.max_range_m = 0.0;
   try {
     map_of(log_of(far), {}, 0.01);
@@ -135,34 +135,37 @@ TEST(GridMap, RefusesWhatWouldNotFitAndSaysWhatHelps) {
   EXPECT_NO_THROW(map_of(log_of(three_beams(1.0F, 2.0F, 1.0F)), {}, 0.001));
 }
 
-TEST(GridMap, WithoutAPoseThereIsNoMap) {
-  EXPECT_THROW(build_grid_map(log_of(three_beams(1, 1, 1)), {}, ReturnOptions{}, GridMapOptions{}), OutputError);
+TEST(OccupancyGrid, WithoutAPoseThereIsNoMap) {
+  EXPECT_THROW(build_occupancy_grid(log_of(three_beams(1, 1, 1)), {}, ReturnOptions{}, OccupancyGridOptions{}),
+               OutputError);
 }
 
 /// Looks ahead along x: what others saw up to 2 m, and one that contradicts them.
 struct Disputed {
   Disputed() {
-    log.positions.push_back({1.0, {three_beams(1.0F, 2.0F, 1.0F)}, std::nullopt, std::nullopt});
-    log.positions.push_back({2.0, {three_beams(1.0F, 3.0F, 0.5F)}, std::nullopt, std::nullopt});
+    log.scans.push_back({1.0, {three_beams(1.0F, 2.0F, 1.0F)}, std::nullopt, std::nullopt});
+    log.scans.push_back({2.0, {three_beams(1.0F, 3.0F, 0.5F)}, std::nullopt, std::nullopt});
     placed = {placed_at({0.05, 0.05, 0.0}, 0), placed_at({0.05, 0.05, 0.0}, 0), placed_at({0.05, 0.05, 0.0}, 1)};
   }
-  GridMap map(Contradicting what) const { return build_grid_map(log, placed, {}, GridMapOptions{0.1, what}); }
+  OccupancyGrid map(Contradicting what) const {
+    return build_occupancy_grid(log, placed, {}, OccupancyGridOptions{0.1, what});
+  }
 
   Log log;
-  std::vector<PlacedPosition> placed;
+  std::vector<PlacedScan> placed;
 };
 
-TEST(GridMap, WithoutContradictionsTheyAreDrawnAlike) {
+TEST(OccupancyGrid, WithoutContradictionsTheyAreDrawnAlike) {
   const Disputed disputed;
   EXPECT_EQ(disputed.map(Contradicting::kFillGaps).grey, disputed.map(Contradicting::kAsOthers).grey);
 }
 
-TEST(GridMap, WhatContradictsDrawsNothingWhereOthersLookedAndNothingBehindTheirWalls) {
+TEST(OccupancyGrid, WhatContradictsDrawsNothingWhereOthersLookedAndNothingBehindTheirWalls) {
   Disputed disputed;
-  const GridMap as_others = disputed.map(Contradicting::kAsOthers);
-  disputed.placed[2].agreement.contradicts_map = true;
+  const OccupancyGrid as_others = disputed.map(Contradicting::kAsOthers);
+  disputed.placed[2].consistency.contradicts_map = true;
   EXPECT_EQ(disputed.map(Contradicting::kAsOthers).grey, as_others.grey);
-  const GridMap map = disputed.map(Contradicting::kFillGaps);
+  const OccupancyGrid map = disputed.map(Contradicting::kFillGaps);
   EXPECT_LT(grey_at(as_others, 0.05, 0.55), grey_at(map, 0.05, 0.55)) << "free, whatever it says";
   EXPECT_LT(grey_at(map, 2.05, 0.05), 60) << "a wall, whatever it says";
   EXPECT_TRUE(is_unknown(grey_at(map, 2.55, 0.05))) << "behind that wall";
@@ -170,18 +173,18 @@ TEST(GridMap, WhatContradictsDrawsNothingWhereOthersLookedAndNothingBehindTheirW
   EXPECT_LT(grey_at(as_others, 3.05, 0.05), kUnknownLow);
 }
 
-TEST(GridMap, WhatContradictsDrawsWhereNobodyElseLooked) {
+TEST(OccupancyGrid, WhatContradictsDrawsWhereNobodyElseLooked) {
   Disputed disputed;
   disputed.placed = {placed_at({0.05, 0.05, 0.0}, 0), placed_at({0.05, 0.05, kPi}, 1)};
-  disputed.placed[1].agreement.contradicts_map = true;
-  const GridMap map = disputed.map(Contradicting::kFillGaps);
+  disputed.placed[1].consistency.contradicts_map = true;
+  const OccupancyGrid map = disputed.map(Contradicting::kFillGaps);
   EXPECT_GT(grey_at(map, -1.55, 0.05), kUnknownHigh);
   EXPECT_LT(grey_at(map, -2.95, 0.05), kUnknownLow);
-  disputed.placed[0].agreement.contradicts_map = true;
+  disputed.placed[0].consistency.contradicts_map = true;
   EXPECT_LT(grey_at(disputed.map(Contradicting::kFillGaps), 2.05, 0.05), kUnknownLow) << "even if all do";
 }
 
-TEST(GridMap, ComesOutTheSameEachTime) {
+TEST(OccupancyGrid, ComesOutTheSameEachTime) {
   const Log log = log_of(three_beams(1.0F, 2.0F, 3.0F));
   const Pose2 pose{0.3, 0.7, 0.123};
   EXPECT_EQ(map_of(log, pose, 0.013).grey, map_of(log, pose, 0.013).grey);

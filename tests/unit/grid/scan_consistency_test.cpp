@@ -19,19 +19,19 @@ namespace {
 /// Scans of a world, and where the map has them.
 struct Mapped {
   Log log;
-  std::vector<PlacedPosition> placed;
+  std::vector<PlacedScan> placed;
 
   void add(const test::World& world, const Pose2& pose, const test::Scanner& scanner, std::mt19937& rng) {
-    log.positions.push_back(test::scan_of(world, pose, scanner, rng));
+    log.scans.push_back(test::scan_of(world, pose, scanner, rng));
     placed.push_back({placed.size(), 0.0, pose, {Pose2{}}});
   }
-  std::vector<float>& ranges(std::size_t i) { return log.positions.at(i).sub_scans.at(0).ranges_m; }
-  std::vector<ScanAgreement> agreements(const AgreementOptions& options = {}) const {
-    return scan_agreements(log, placed, ReturnOptions{}, options);
+  std::vector<float>& ranges(std::size_t i) { return log.scans.at(i).sweeps.at(0).ranges_m; }
+  std::vector<ScanConsistency> agreements(const ConsistencyOptions& options = {}) const {
+    return scan_consistencies(log, placed, ReturnOptions{}, options);
   }
-  std::vector<std::size_t> contradicting(const AgreementOptions& options = {}) const {
+  std::vector<std::size_t> contradicting(const ConsistencyOptions& options = {}) const {
     std::vector<std::size_t> found;
-    const std::vector<ScanAgreement> all = agreements(options);
+    const std::vector<ScanConsistency> all = agreements(options);
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (all[i].contradicts_map) found.push_back(i);
     }
@@ -58,23 +58,23 @@ Mapped ring(unsigned seed, std::size_t count = 75) {
 
 using Indices = std::vector<std::size_t>;
 
-TEST(ScanAgreement, NoScanOfARightMapContradictsIt) {
+TEST(ScanConsistency, NoScanOfARightMapContradictsIt) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     const Mapped mapped = ring(seed);
     EXPECT_EQ(mapped.contradicting(), Indices{}) << seed;
-    for (const ScanAgreement& one : mapped.agreements()) {
+    for (const ScanConsistency& one : mapped.agreements()) {
       EXPECT_GT(one.agree, 0.8);
       EXPECT_LE(one.known(), 1.0 + 1e-12);
     }
   }
 }
 
-TEST(ScanAgreement, NorWhenAllAreAFewCentimetresOff) {
+TEST(ScanConsistency, NorWhenAllAreAFewCentimetresOff) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     Mapped mapped = ring(seed);
     std::mt19937 rng(seed + 100);
     std::normal_distribution<double> error(0.0, 0.05);
-    for (PlacedPosition& place : mapped.placed) {
+    for (PlacedScan& place : mapped.placed) {
       place.map_from_robot.x_m += error(rng);
       place.map_from_robot.y_m += error(rng);
       place.map_from_robot = place.map_from_robot * Pose2{0.0, 0.0, 10 * kDegree * error(rng)};
@@ -83,12 +83,12 @@ TEST(ScanAgreement, NorWhenAllAreAFewCentimetresOff) {
   }
 }
 
-TEST(ScanAgreement, OneThatIsMovedOffItsPlaceDoesAndNoOther) {
+TEST(ScanConsistency, OneThatIsMovedOffItsPlaceDoesAndNoOther) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     Mapped mapped = ring(seed);
     const std::size_t moved = 10 + 5 * seed;
     // Across the corridor: along it the walls stay walls.
-    PlacedPosition& place = mapped.placed[moved];
+    PlacedScan& place = mapped.placed[moved];
     const Pose2 ahead = test::on_ring(test::kRingStep_m * static_cast<double>(moved));
     const Point2 across = rotate({0.0, seed % 2 == 0 ? 1.0 : -1.0}, ahead.theta_rad);
     place.map_from_robot.x_m += across.x();
@@ -98,14 +98,14 @@ TEST(ScanAgreement, OneThatIsMovedOffItsPlaceDoesAndNoOther) {
   }
 }
 
-TEST(ScanAgreement, ItDoesNotMatterHowTheMapLies) {
+TEST(ScanConsistency, ItDoesNotMatterHowTheMapLies) {
   Mapped mapped = ring(3);
   mapped.placed[40].map_from_robot = mapped.placed[40].map_from_robot * Pose2{0.5, 0.9, 25 * kDegree};
   const Indices found = mapped.contradicting();
   EXPECT_EQ(found, Indices{40});
   for (const Pose2& map_from_old : {Pose2{-1000.3, 77.7, 0.0}, Pose2{0.03, 0.02, 1.0}, Pose2{3.0, -900.0, -2.5}}) {
     Mapped turned = mapped;
-    for (PlacedPosition& place : turned.placed) place.map_from_robot = map_from_old * place.map_from_robot;
+    for (PlacedScan& place : turned.placed) place.map_from_robot = map_from_old * place.map_from_robot;
     EXPECT_EQ(turned.contradicting(), found);
   }
 }
@@ -115,49 +115,49 @@ void cut_short(std::vector<float>& ranges, std::size_t from, std::size_t to, flo
   for (std::size_t b = from; b < to; ++b) ranges[b] = std::min(ranges[b], range_m);
 }
 
-TEST(ScanAgreement, BeamsThatEndWhereOthersLookedThroughAreInFree) {
+TEST(ScanConsistency, BeamsThatEndWhereOthersLookedThroughAreInFree) {
   Mapped mapped = ring(5);
   cut_short(mapped.ranges(30), 0, 271, 0.7F);
-  const ScanAgreement one = mapped.agreements()[30];
+  const ScanConsistency one = mapped.agreements()[30];
   EXPECT_TRUE(one.contradicts_map);
   EXPECT_GT(one.in_free, 0.5);
   EXPECT_LT(one.through, 0.05);
   EXPECT_EQ(mapped.contradicting(), Indices{30});
 }
 
-TEST(ScanAgreement, BeamsThatGoOnBehindWallsAreThrough) {
+TEST(ScanConsistency, BeamsThatGoOnBehindWallsAreThrough) {
   Mapped mapped = ring(6);
   for (std::size_t b = 60; b < 210; ++b) mapped.ranges(30)[b] += 1.5F;
-  const ScanAgreement one = mapped.agreements()[30];
+  const ScanConsistency one = mapped.agreements()[30];
   EXPECT_TRUE(one.contradicts_map);
   EXPECT_GT(one.through, 0.3);
   EXPECT_LT(one.in_free, 0.15);
   EXPECT_EQ(mapped.contradicting(), Indices{30});
 }
 
-TEST(ScanAgreement, AFewBeamsThatMeetAPersonAreNoContradiction) {
+TEST(ScanConsistency, AFewBeamsThatMeetAPersonAreNoContradiction) {
   Mapped mapped = ring(7);
   cut_short(mapped.ranges(30), 120, 150, 0.6F);
-  const ScanAgreement one = mapped.agreements()[30];
+  const ScanConsistency one = mapped.agreements()[30];
   EXPECT_GT(one.in_free, 0.07);
   EXPECT_FALSE(one.contradicts_map);
-  AgreementOptions strict;
+  ConsistencyOptions strict;
   strict.contradicting_share = 0.05;
   EXPECT_TRUE(mapped.agreements(strict)[30].contradicts_map);
 }
 
-TEST(ScanAgreement, WallsThatOthersLookedThroughTooAreNoWalls) {
+TEST(ScanConsistency, WallsThatOthersLookedThroughTooAreNoWalls) {
   Mapped alone = ring(6);
   for (float& range_m : alone.ranges(30)) range_m += 1.5F;
   Mapped glass = ring(6);
-  for (std::size_t i = 0; i < glass.log.positions.size(); i += 2) {
+  for (std::size_t i = 0; i < glass.log.scans.size(); i += 2) {
     for (float& range_m : glass.ranges(i)) range_m += 1.5F;
   }
   EXPECT_GT(alone.agreements()[30].through, 0.5);
   EXPECT_LT(glass.agreements()[30].through, 0.15);
 }
 
-TEST(ScanAgreement, LongGrazingBeamsThatAreALittleOffGoThroughNothing) {
+TEST(ScanConsistency, LongGrazingBeamsThatAreALittleOffGoThroughNothing) {
   test::World corridor;
   test::add_polygon(corridor, {{0.0, -1.0}, {40.0, -1.0}, {40.0, 1.0}, {0.0, 1.0}});
   std::mt19937 rng(1);
@@ -166,18 +166,18 @@ TEST(ScanAgreement, LongGrazingBeamsThatAreALittleOffGoThroughNothing) {
     mapped.add(corridor, {2.0 + i, 0.2 * std::sin(i), 0.1 * std::cos(2.0 * i)}, laser(), rng);
     mapped.placed.back().map_from_robot.y_m += i % 2 == 0 ? 0.05 : -0.05;
   }
-  for (const ScanAgreement& one : mapped.agreements()) {
+  for (const ScanConsistency& one : mapped.agreements()) {
     EXPECT_LT(one.through, 0.08);
     EXPECT_FALSE(one.contradicts_map);
   }
 }
 
-TEST(ScanAgreement, ScansOfOneLookAreNoEvidenceAboutEachOther) {
+TEST(ScanConsistency, ScansOfOneLookAreNoEvidenceAboutEachOther) {
   const test::World world = test::uneven_room();
   std::mt19937 rng(1);
   Mapped mapped;
   for (int i = 0; i < 20; ++i) mapped.add(world, {0.01 * i, 0.0, 0.01 * i}, laser(), rng);
-  for (const ScanAgreement& one : mapped.agreements()) EXPECT_EQ(one.known(), 0.0);
+  for (const ScanConsistency& one : mapped.agreements()) EXPECT_EQ(one.known(), 0.0);
 
   // Twenty that lean alike are outvoted by three from elsewhere.
   for (std::size_t i = 0; i < 20; ++i) cut_short(mapped.ranges(i), 0, 271, 0.8F);
@@ -189,7 +189,7 @@ TEST(ScanAgreement, ScansOfOneLookAreNoEvidenceAboutEachOther) {
   EXPECT_EQ(mapped.contradicting(), leaning);
 }
 
-TEST(ScanAgreement, ALonelyScanAndOneWithoutReturnsContradictNothing) {
+TEST(ScanConsistency, ALonelyScanAndOneWithoutReturnsContradictNothing) {
   Mapped mapped = ring(8, 1);
   EXPECT_EQ(mapped.agreements().at(0).known(), 0.0);
   for (float& range_m : mapped.ranges(0)) range_m = std::nanf("");
@@ -197,7 +197,7 @@ TEST(ScanAgreement, ALonelyScanAndOneWithoutReturnsContradictNothing) {
   EXPECT_TRUE(Mapped{}.agreements().empty());
 }
 
-TEST(ScanAgreement, PosesBeyondAnyMapAreLeftOut) {
+TEST(ScanConsistency, PosesBeyondAnyMapAreLeftOut) {
   Mapped mapped = ring(9);
   mapped.placed[20].map_from_robot.x_m = std::numeric_limits<double>::quiet_NaN();
   mapped.placed[21].map_from_robot.x_m = 1e300;
@@ -206,39 +206,39 @@ TEST(ScanAgreement, PosesBeyondAnyMapAreLeftOut) {
   EXPECT_EQ(mapped.contradicting(), Indices{});
 }
 
-TEST(ScanAgreement, EachFragmentIsJudgedByItself) {
+TEST(ScanConsistency, EachFragmentIsJudgedByItself) {
   const Mapped mapped = ring(4);
-  std::vector<Fragment> fragments(2);
-  for (const PlacedPosition& place : mapped.placed) fragments[place.position_index % 2].positions.push_back(place);
-  fragments[1].positions[10].map_from_robot = fragments[1].positions[10].map_from_robot * Pose2{0.4, 0.9, 0.4};
-  judge_scans(mapped.log, {}, {}, fragments);
+  std::vector<Component> components(2);
+  for (const PlacedScan& place : mapped.placed) components[place.scan_index % 2].scans.push_back(place);
+  components[1].scans[10].map_from_robot = components[1].scans[10].map_from_robot * Pose2{0.4, 0.9, 0.4};
+  judge_consistency(mapped.log, {}, {}, components);
   for (std::size_t f = 0; f < 2; ++f) {
-    const std::vector<ScanAgreement> alone = scan_agreements(mapped.log, fragments[f].positions, {}, {});
+    const std::vector<ScanConsistency> alone = scan_consistencies(mapped.log, components[f].scans, {}, {});
     for (std::size_t i = 0; i < alone.size(); ++i) {
-      EXPECT_EQ(fragments[f].positions[i].agreement.agree, alone[i].agree);
-      EXPECT_EQ(fragments[f].positions[i].agreement.contradicts_map, f == 1 && i == 10) << f << ", " << i;
+      EXPECT_EQ(components[f].scans[i].consistency.agree, alone[i].agree);
+      EXPECT_EQ(components[f].scans[i].consistency.contradicts_map, f == 1 && i == 10) << f << ", " << i;
     }
   }
 }
 
-TEST(ScanAgreement, BothMethodsJudgeTheirScans) {
+TEST(ScanConsistency, BothMethodsJudgeTheirScans) {
   const test::World world = test::cluttered_room(2);
   std::mt19937 rng(2);
   Log log;
-  for (int i = 0; i < 8; ++i) log.positions.push_back(test::scan_of(world, {-0.8 + 0.2 * i, 0.0, 0.02 * i}));
+  for (int i = 0; i < 8; ++i) log.scans.push_back(test::scan_of(world, {-0.8 + 0.2 * i, 0.0, 0.02 * i}));
   MappingOptions robust;
   robust.robust.keyframes.step_m = 0.1;
   for (const MappingOptions& options : {robust, test::paper_options()}) {
     RunObserver nobody;
     const MapResult result = map_log(log, options, nobody);
-    ASSERT_EQ(result.placed().size(), log.positions.size());
-    for (const PlacedPosition& place : result.placed()) EXPECT_GT(place.agreement.agree, 0.7);
-    EXPECT_GT(result.times.agreement_s, 0.0);
+    ASSERT_EQ(result.placed().size(), log.scans.size());
+    for (const PlacedScan& place : result.placed()) EXPECT_GT(place.consistency.agree, 0.7);
+    EXPECT_GT(result.times.consistency_s, 0.0);
   }
 }
 
-TEST(ScanAgreement, RefusesLimitsThatAreNone) {
-  AgreementOptions options;
+TEST(ScanConsistency, RefusesLimitsThatAreNone) {
+  ConsistencyOptions options;
   options.cell_m = 0.0;
   EXPECT_THROW(Mapped{}.agreements(options), ConfigError);
 }

@@ -103,32 +103,32 @@ TEST(WallDirection, TurnsAllFragmentsAndNoMotion) {
   PlacedLog walk = walk_in(room_with_clutter(), 17 * kDegree);
   const PlacedLog other = walk_in(room_with_clutter(), -5 * kDegree);
   const PlacedLog round = walk_in(polygon(60, 6.0));
-  std::vector<Fragment> fragments(3);
+  std::vector<Component> components(3);
   Log log;
   for (const PlacedLog* part : std::vector<const PlacedLog*>{&walk, &other, &round}) {
-    for (PlacedPosition place : part->placed) {
-      place.position_index += log.positions.size() - place.position_index;
-      fragments[static_cast<std::size_t>(part == &other) + 2 * static_cast<std::size_t>(part == &round)]
-          .positions.push_back(place);
-      log.positions.push_back(part->log.positions[place.position_index % 9]);
+    for (PlacedScan place : part->placed) {
+      place.scan_index += log.scans.size() - place.scan_index;
+      components[static_cast<std::size_t>(part == &other) + 2 * static_cast<std::size_t>(part == &round)]
+          .scans.push_back(place);
+      log.scans.push_back(part->log.scans[place.scan_index % 9]);
     }
   }
-  const std::vector<Fragment> before = fragments;
-  const std::vector<WallDirection> found = align_walls(log, {}, fragments);
+  const std::vector<Component> before = components;
+  const std::vector<WallDirection> found = align_walls(log, {}, components);
   ASSERT_EQ(found.size(), 3U);
   EXPECT_NEAR(found[0].turn_rad() / kDegree, -17.0, 0.1);
   EXPECT_NEAR(found[1].turn_rad() / kDegree, 5.0, 0.1);
   EXPECT_EQ(found[2].turn_rad(), 0.0);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(wall_direction(log, fragments[i].positions, {}).turn_rad(), 0.0, 1e-3);
+    EXPECT_NEAR(wall_direction(log, components[i].scans, {}).turn_rad(), 0.0, 1e-3);
     for (std::size_t k = 1; k < 9; ++k) {
-      const auto motion = [&](const std::vector<PlacedPosition>& placed) {
+      const auto motion = [&](const std::vector<PlacedScan>& placed) {
         return inverse(placed[k - 1].map_from_robot) * placed[k].map_from_robot;
       };
-      EXPECT_THAT(motion(fragments[i].positions), test::IsNearPose(motion(before[i].positions), 1e-12, 1e-12));
+      EXPECT_THAT(motion(components[i].scans), test::IsNearPose(motion(before[i].scans), 1e-12, 1e-12));
     }
   }
-  EXPECT_EQ(fragments[2].positions[4].map_from_robot, before[2].positions[4].map_from_robot);
+  EXPECT_EQ(components[2].scans[4].map_from_robot, before[2].scans[4].map_from_robot);
 }
 
 }  // namespace

@@ -25,17 +25,17 @@ struct CutForALoop {
       : views(test::views_along(test::ring_world(1), truth, 1, scanner)) {
     for (std::size_t n = 0; n < truth.size(); ++n) chain.keyframes.push_back({n, 0, views[n], {}, {}});
     for (std::size_t i = 0; i + 1 < truth.size(); ++i) {
-      KeyframeLink& link = chain.links.emplace_back();
-      link.hypotheses = {hypothesis_at(*views[i], *views[i + 1], step(i), {})};
+      OdometryEdge& link = chain.edges.emplace_back();
+      link.candidates = {candidate_at(*views[i], *views[i + 1], step(i), {})};
       link.choice = {0, kFullMargin, {0.0}};
     }
     map.map_from_keyframe = truth;
     const Pose2 move = truth[kLink] * step(kLink) * kTurnedAway * inverse(truth[kLink + 1]);
     for (std::size_t n = kLink + 1; n < truth.size(); ++n) map.map_from_keyframe[n] = move * truth[n];
-    map.link_choice.assign(chain.links.size(), 0);
-    map.link_choice[kLink] = kCut;
-    map.held_by_loops.assign(chain.links.size(), false);
-    map.held_by_loops[kLink] = true;
+    map.edge_choice.assign(chain.edges.size(), 0);
+    map.edge_choice[kLink] = kCut;
+    map.loop_constrained.assign(chain.edges.size(), false);
+    map.loop_constrained[kLink] = true;
     map.component.assign(truth.size(), 0);
     const std::vector<Pose2>& wrong = map.map_from_keyframe;
     map.loops = {{kLink - 1, kLink + 2, inverse(wrong[kLink - 1]) * wrong[kLink + 2], strength}};
@@ -43,116 +43,116 @@ struct CutForALoop {
 
   Pose2 step(std::size_t i) const { return inverse(truth[i]) * truth[i + 1]; }
 
-  bool revise(AlignmentStore* store = nullptr) {
+  bool revise(MatchCache* store = nullptr) {
     RobustOptions options;
     RunObserver nobody;
-    return revise_doubtful_links(options, {1, nobody}, store, chain, map);
+    return verify_doubtful_edges(options, {1, nobody}, store, chain, map);
   }
 
   std::vector<Pose2> truth = test::ring_walk(14, 2, 4.0);
   test::Views views;
-  KeyframeChain chain;
-  KeyframeMap map;
+  KeyframeGraph chain;
+  OptimizedMap map;
 };
 
-TEST(LinkDoubts, AWeakLoopForWhichALinkWasCutIsQuestioned) {
+TEST(DoubtfulEdges, AWeakLoopForWhichALinkWasCutIsQuestioned) {
   CutForALoop walk(5.0);
   ASSERT_TRUE(walk.revise());
   EXPECT_THAT(walk.map.loops, IsEmpty()) << "the scans of both sides speak against it";
-  EXPECT_THAT(walk.map.link_choice, Each(Ne(kCut)));
+  EXPECT_THAT(walk.map.edge_choice, Each(Ne(kCut)));
   EXPECT_THAT(walk.map.component, Each(0U));
-  EXPECT_THAT(walk.map.held_by_loops, Each(false));
+  EXPECT_THAT(walk.map.loop_constrained, Each(false));
   EXPECT_LT(test::worst_off_m(walk.map.map_from_keyframe, walk.truth), 0.1);
 }
 
-TEST(LinkDoubts, AStrongLoopIsNot) {
+TEST(DoubtfulEdges, AStrongLoopIsNot) {
   CutForALoop walk(25.0);
   walk.revise();
   EXPECT_THAT(walk.map.loops, SizeIs(1));
-  EXPECT_EQ(walk.map.link_choice[kLink], kCut);
+  EXPECT_EQ(walk.map.edge_choice[kLink], kCut);
 }
 
-TEST(LinkDoubts, NoneAreLookedForWhereNoneAreWanted) {
+TEST(DoubtfulEdges, NoneAreLookedForWhereNoneAreWanted) {
   CutForALoop walk(5.0);
   const std::vector<Pose2> before = walk.map.map_from_keyframe;
   RobustOptions options;
   options.edge_verification.doubt_below = 0.0;
   RunObserver nobody;
-  EXPECT_FALSE(revise_doubtful_links(options, {1, nobody}, nullptr, walk.chain, walk.map));
+  EXPECT_FALSE(verify_doubtful_edges(options, {1, nobody}, nullptr, walk.chain, walk.map));
   for (std::size_t n = 0; n < before.size(); ++n) EXPECT_THAT(walk.map.map_from_keyframe[n], HasSameBits(before[n]));
 }
 
-TEST(LinkDoubts, WhatAllScansSayIsTheProbabilityOfTheLink) {
+TEST(DoubtfulEdges, WhatAllScansSayIsTheProbabilityOfTheLink) {
   CutForALoop walk(5.0);
-  EXPECT_FALSE(walk.chain.links[kLink].revised);
+  EXPECT_FALSE(walk.chain.edges[kLink].verified);
   walk.revise();
-  ASSERT_TRUE(walk.chain.links[kLink].revised);
-  EXPECT_EQ(walk.chain.links[kLink].revised->hypothesis, static_cast<std::size_t>(walk.map.link_choice[kLink]));
-  EXPECT_GE(walk.chain.links[kLink].revised->probability, RobustOptions().front_end.split_below);
-  EXPECT_DOUBLE_EQ(stated_probability(walk.chain.links[kLink]), walk.chain.links[kLink].revised->probability);
-  EXPECT_FALSE(walk.chain.links[kLink - 1].revised) << "nobody was asked";
+  ASSERT_TRUE(walk.chain.edges[kLink].verified);
+  EXPECT_EQ(walk.chain.edges[kLink].verified->candidate, static_cast<std::size_t>(walk.map.edge_choice[kLink]));
+  EXPECT_GE(walk.chain.edges[kLink].verified->probability, RobustOptions().front_end.split_below);
+  EXPECT_DOUBLE_EQ(stated_probability(walk.chain.edges[kLink]), walk.chain.edges[kLink].verified->probability);
+  EXPECT_FALSE(walk.chain.edges[kLink - 1].verified) << "nobody was asked";
 }
 
-TEST(LinkDoubts, ScansThatSeeLittleLeaveMoreDoubt) {
-  const auto doubt = [](double view_shortfall) {
+TEST(DoubtfulEdges, ScansThatSeeLittleLeaveMoreDoubt) {
+  const auto doubt = [](double insufficient_view) {
     CutForALoop walk(5.0);
-    walk.chain.links[kLink].view_shortfall = view_shortfall;
+    walk.chain.edges[kLink].insufficient_view = insufficient_view;
     walk.revise();
-    return 1.0 - walk.chain.links[kLink].revised.value().probability;
+    return 1.0 - walk.chain.edges[kLink].verified.value().probability;
   };
   EXPECT_GT(doubt(0.2), 5.0 * doubt(0.0));
 }
 
-TEST(LinkDoubts, NothingIsStatedOfALinkWhereTheObserverAskedToStop) {
+TEST(DoubtfulEdges, NothingIsStatedOfALinkWhereTheObserverAskedToStop) {
   struct Impatient : RunObserver {
     bool keep_going() override { return false; }
   } impatient;
   CutForALoop walk(5.0);
   RobustOptions options;
-  revise_doubtful_links(options, {1, impatient}, nullptr, walk.chain, walk.map);
-  for (const KeyframeLink& link : walk.chain.links) EXPECT_FALSE(link.revised);
+  verify_doubtful_edges(options, {1, impatient}, nullptr, walk.chain, walk.map);
+  for (const OdometryEdge& link : walk.chain.edges) EXPECT_FALSE(link.verified);
 }
 
 /// Nothing is ever so probable.
-TEST(LinkDoubts, WhatStaysInDoubtSplitsTheMapAndOpensTheLoop) {
+TEST(DoubtfulEdges, WhatStaysInDoubtSplitsTheMapAndOpensTheLoop) {
   CutForALoop walk(5.0);
   RobustOptions options;
   options.front_end.split_below = 1.0;
   RunObserver nobody;
-  ASSERT_TRUE(revise_doubtful_links(options, {1, nobody}, nullptr, walk.chain, walk.map));
+  ASSERT_TRUE(verify_doubtful_edges(options, {1, nobody}, nullptr, walk.chain, walk.map));
   EXPECT_THAT(walk.map.loops, IsEmpty());
-  EXPECT_EQ(walk.map.link_choice[kLink], kCut);
+  EXPECT_EQ(walk.map.edge_choice[kLink], kCut);
   EXPECT_NE(walk.map.component[kLink], walk.map.component[kLink + 1]);
-  EXPECT_FALSE(walk.map.held_by_loops[kLink]);
-  ASSERT_TRUE(walk.chain.links[kLink].revised) << "the best is reported all the same";
-  EXPECT_GT(walk.chain.links[kLink].revised->probability, 0.5);
+  EXPECT_FALSE(walk.map.loop_constrained[kLink]);
+  ASSERT_TRUE(walk.chain.edges[kLink].verified) << "the best is reported all the same";
+  EXPECT_GT(walk.chain.edges[kLink].verified->probability, 0.5);
 }
 
-TEST(LinkDoubts, WhatIsNotClearIsSearchedAgain) {
+TEST(DoubtfulEdges, WhatIsNotClearIsSearchedAgain) {
   const auto hypotheses_of = [](double clear_above) {
     CutForALoop walk(5.0);
     RobustOptions options;
     options.edge_verification.clear_above = clear_above;
     RunObserver nobody;
-    revise_doubtful_links(options, {1, nobody}, nullptr, walk.chain, walk.map);
-    return walk.chain.links[kLink].hypotheses.size();
+    verify_doubtful_edges(options, {1, nobody}, nullptr, walk.chain, walk.map);
+    return walk.chain.edges[kLink].candidates.size();
   };
   EXPECT_GT(hypotheses_of(1.0), hypotheses_of(0.0));
 }
 
 /// As in the chain. Else places far away, of which a thorough search finds many, outdo the true one together.
-TEST(LinkDoubts, WhatIsSearchedAgainScoresLessFarFromWhereTheScanWasToBeExpected) {
+TEST(DoubtfulEdges, WhatIsSearchedAgainScoresLessFarFromWhereTheScanWasToBeExpected) {
   CutForALoop walk(5.0);
   const ExpectedPose expected{walk.step(kLink)};
   walk.chain.keyframes[kLink + 1].expected = expected;
   RobustOptions options;
   options.edge_verification.clear_above = 1.0;
   RunObserver nobody;
-  revise_doubtful_links(options, {1, nobody}, nullptr, walk.chain, walk.map);
+  verify_doubtful_edges(options, {1, nobody}, nullptr, walk.chain, walk.map);
   double most = 0.0;
-  for (const PoseHypothesis& pose : walk.chain.links[kLink].hypotheses) {
+  for (const MatchCandidate& pose : walk.chain.edges[kLink].candidates) {
     const double unlikely = surprise(expected, pose.ref_from_query);
-    const double by_scans = hypothesis_at(*walk.views[kLink], *walk.views[kLink + 1], pose.ref_from_query, {}).score;
+    const double by_scans = candidate_at(*walk.views[kLink], *walk.views[kLink + 1], pose.ref_from_query, {}).score;
     EXPECT_NEAR(pose.score, by_scans - unlikely, 0.05);
     most = std::max(most, unlikely);
   }
@@ -160,17 +160,17 @@ TEST(LinkDoubts, WhatIsSearchedAgainScoresLessFarFromWhereTheScanWasToBeExpected
 }
 
 /// Of scans that look one way as well.
-TEST(LinkDoubts, ALinkThatTheOthersContradictIsReplaced) {
+TEST(DoubtfulEdges, ALinkThatTheOthersContradictIsReplaced) {
   CutForALoop walk(5.0, test::half_circle());
   walk.map.loops.clear();
-  walk.map.held_by_loops[kLink] = false;
-  KeyframeLink& link = walk.chain.links[kLink];
-  link.hypotheses.insert(link.hypotheses.begin(), link.hypotheses[0]);
-  link.hypotheses[0].ref_from_query = walk.step(kLink) * kTurnedAway;
+  walk.map.loop_constrained[kLink] = false;
+  OdometryEdge& link = walk.chain.edges[kLink];
+  link.candidates.insert(link.candidates.begin(), link.candidates[0]);
+  link.candidates[0].ref_from_query = walk.step(kLink) * kTurnedAway;
   link.choice = {0, 0.1, {0.0, 0.0}};
-  walk.map.link_choice[kLink] = 0;
+  walk.map.edge_choice[kLink] = 0;
   ASSERT_TRUE(walk.revise());
-  EXPECT_EQ(walk.map.link_choice[kLink], 1);
+  EXPECT_EQ(walk.map.edge_choice[kLink], 1);
   EXPECT_LT(test::worst_off_m(walk.map.map_from_keyframe, walk.truth), 0.1);
 }
 

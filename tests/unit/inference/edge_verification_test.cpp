@@ -39,22 +39,23 @@ struct Torn {
 
   Pose2 true_step(std::size_t n) const { return inverse(truth[n]) * truth[n + 1]; }
 
-  RevisedMap revised(double least_probability = 0.7, int threads = 1) {
+  VerifiedMap verified(double least_probability = 0.7, int threads = 1) {
     RunObserver nobody;
-    return revise_links(views, poses, pieces, doubts, {}, least_probability, threads, nobody);
+    return verify_edges(views, poses, pieces, doubts, {}, least_probability, threads, nobody);
   }
 
   std::vector<Pose2> truth;
   test::Views views;
   std::vector<Pose2> poses;
   std::vector<std::size_t> pieces;
-  std::vector<DoubtfulLink> doubts;
+  std::vector<DoubtfulEdge> doubts;
 };
 
 /// Per link: the candidate that joins, or kCut.
-std::vector<int> choices(const RevisedMap& revised) {
+std::vector<int> choices(const VerifiedMap& verified) {
   std::vector<int> chosen;
-  for (const RevisedLink& link : revised.links) chosen.push_back(link.joins ? static_cast<int>(link.candidate) : kCut);
+  for (const VerifiedEdge& link : verified.edges)
+    chosen.push_back(link.joins ? static_cast<int>(link.candidate) : kCut);
   return chosen;
 }
 
@@ -62,10 +63,10 @@ std::vector<int> choices(const RevisedMap& revised) {
 TEST(ReviseLinks, TakesWhatAllScansSayAndNotTheTwoAlone) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
-  const RevisedMap revised = map.revised();
-  EXPECT_THAT(choices(revised), ElementsAre(2));
-  EXPECT_THAT(revised.piece_of_node, Each(revised.piece_of_node.front()));
-  EXPECT_LT(test::worst_off_m(revised.map_from_node, map.truth), 1e-6);
+  const VerifiedMap verified = map.verified();
+  EXPECT_THAT(choices(verified), ElementsAre(2));
+  EXPECT_THAT(verified.piece_of_node, Each(verified.piece_of_node.front()));
+  EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 1e-6);
 }
 
 TEST(ReviseLinks, RepairsSeveralOnlyOneOfWhichIsRight) {
@@ -73,29 +74,29 @@ TEST(ReviseLinks, RepairsSeveralOnlyOneOfWhichIsRight) {
   map.doubts[0].candidates.push_back({map.true_step(3), 0.0});
   map.doubts[1].candidates[0].a_from_b = map.true_step(8);  // the map is right here
   map.doubts[1].candidates.push_back({map.true_step(8) * kTurnedAway, 1.0});
-  const RevisedMap revised = map.revised();
-  EXPECT_THAT(choices(revised), ElementsAre(2, 0));
-  EXPECT_LT(test::worst_off_m(revised.map_from_node, map.truth), 1e-6);
+  const VerifiedMap verified = map.verified();
+  EXPECT_THAT(choices(verified), ElementsAre(2, 0));
+  EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 1e-6);
 }
 
 /// The scores are those that the two scans give.
 TEST(ReviseLinks, SplitsWhereNoCandidateIsRight) {
   Torn map({6});
-  for (DoubtfulLink::Candidate& candidate : map.doubts[0].candidates) {
-    candidate.score = hypothesis_at(*map.views[6], *map.views[7], candidate.a_from_b, {}).score;
+  for (DoubtfulEdge::Candidate& candidate : map.doubts[0].candidates) {
+    candidate.score = candidate_at(*map.views[6], *map.views[7], candidate.a_from_b, {}).score;
   }
-  const RevisedMap revised = map.revised();
-  EXPECT_THAT(choices(revised), ElementsAre(kCut));
-  EXPECT_NE(revised.piece_of_node[6], revised.piece_of_node[7]);
+  const VerifiedMap verified = map.verified();
+  EXPECT_THAT(choices(verified), ElementsAre(kCut));
+  EXPECT_NE(verified.piece_of_node[6], verified.piece_of_node[7]);
   for (std::size_t n = 0; n < map.poses.size(); ++n) {
-    EXPECT_THAT(revised.map_from_node[n], HasSameBits(map.poses[n])) << "pieces stay where they are";
+    EXPECT_THAT(verified.map_from_node[n], HasSameBits(map.poses[n])) << "pieces stay where they are";
   }
 }
 
 TEST(ReviseLinks, JoinsNothingWhenNothingIsProbableEnough) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
-  EXPECT_THAT(choices(map.revised(1.0)), ElementsAre(kCut));
+  EXPECT_THAT(choices(map.verified(1.0)), ElementsAre(kCut));
 }
 
 /// However good both are: the rival's score goes from far behind to far ahead.
@@ -105,7 +106,7 @@ TEST(ReviseLinks, SplitsWhereTwoPlacesFitAlike) {
   std::vector<int> chosen;
   for (double score = 0.0; score < 40.0; score += 0.5) {
     map.doubts[0].candidates = {{map.true_step(6), 10.0}, {away, score}};
-    const int choice = choices(map.revised()).front();
+    const int choice = choices(map.verified()).front();
     if (chosen.empty() || chosen.back() != choice) chosen.push_back(choice);
   }
   EXPECT_THAT(chosen, ElementsAre(0, kCut, 1));
@@ -119,7 +120,7 @@ TEST(ReviseLinks, IsNearlyRightWhereItSlides) {
     const Pose2 one = map.true_step(6) * Pose2{0.5 * off_m.x(), 0.5 * off_m.y(), 0.0};
     const Pose2 other = map.true_step(6) * Pose2{-0.5 * off_m.x(), -0.5 * off_m.y(), 0.0};
     map.doubts[0].candidates = {{other, 9.0, covariance}, {one, 10.0, covariance}};
-    return map.revised().links[0].probability;
+    return map.verified().edges[0].probability;
   };
   const Eigen::Vector3d held(0.02, 0.02, 0.01);
   const Eigen::Vector3d along_x(0.5, 0.02, 0.01);
@@ -134,38 +135,38 @@ TEST(ReviseLinks, CountsNoNeighbourAsARival) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
   map.doubts[0].candidates.push_back({map.true_step(6) * Pose2{0.05, 0.0, 0.5 * kDegree}, 0.0});
-  const RevisedMap revised = map.revised();
-  ASSERT_GE(choices(revised).front(), 2);
-  EXPECT_GT(revised.links[0].probability, 0.9);
-  EXPECT_LT(test::worst_off_m(revised.map_from_node, map.truth), 0.15);
+  const VerifiedMap verified = map.verified();
+  ASSERT_GE(choices(verified).front(), 2);
+  EXPECT_GT(verified.edges[0].probability, 0.9);
+  EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 0.15);
 }
 
 /// The map's pose is aligned to more than the two scans.
 TEST(ReviseLinks, LeavesThePieceWhereTheMapHasItWhenThatIsTheSamePlace) {
   Torn map({6}, Pose2{0.05, 0.0, 0.5 * kDegree});
   map.doubts[0].candidates = {{map.doubts[0].candidates[0].a_from_b, 0.0}, {map.true_step(6), 5.0}};
-  const RevisedMap revised = map.revised();
-  EXPECT_THAT(choices(revised), ElementsAre(0));
-  EXPECT_LT(test::worst_off_m(revised.map_from_node, map.poses), 1e-6);
+  const VerifiedMap verified = map.verified();
+  EXPECT_THAT(choices(verified), ElementsAre(0));
+  EXPECT_LT(test::worst_off_m(verified.map_from_node, map.poses), 1e-6);
 }
 
 TEST(ReviseLinks, IsLessSureWithARivalAndWhereAllAreBad) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 10.0});
-  const double alone = map.revised().links[0].probability;
+  const double alone = map.verified().edges[0].probability;
   EXPECT_GT(alone, 0.99);
   map.doubts[0].candidates.push_back({map.true_step(6) * Pose2{0.0, 0.0, kPi}, 12.0});
-  EXPECT_LT(map.revised().links[0].probability, alone - 0.005);
-  for (DoubtfulLink::Candidate& candidate : map.doubts[0].candidates) candidate.score = -40.0;
-  EXPECT_LT(map.revised().links[0].probability, 0.8) << "it may be none of them";
+  EXPECT_LT(map.verified().edges[0].probability, alone - 0.005);
+  for (DoubtfulEdge::Candidate& candidate : map.doubts[0].candidates) candidate.score = -40.0;
+  EXPECT_LT(map.verified().edges[0].probability, 0.8) << "it may be none of them";
 }
 
 TEST(ReviseLinks, IsLessSureOfScansThatSeeLittle) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
-  const double sure = map.revised().links[0].probability;
-  map.doubts[0].view_shortfall = 0.3;
-  EXPECT_LT(map.revised().links[0].probability, sure - 0.05);
+  const double sure = map.verified().edges[0].probability;
+  map.doubts[0].insufficient_view = 0.3;
+  EXPECT_LT(map.verified().edges[0].probability, sure - 0.05);
 }
 
 /// Nodes 4 to `last` are a piece of their own; before and after it are one, as loops make them.
@@ -175,7 +176,7 @@ struct TornTwice : Torn {
       pieces[n] = pieces[0];
       poses[n] = truth[n];
     }
-    for (DoubtfulLink& doubt : doubts) {
+    for (DoubtfulEdge& doubt : doubts) {
       const Pose2 step = true_step(doubt.link);
       doubt.candidates = {{inverse(poses[doubt.link]) * poses[doubt.link + 1], -9.0}, {step, -9.0}};
     }
@@ -184,34 +185,35 @@ struct TornTwice : Torn {
 
 TEST(ReviseLinks, BelievesWhatTheWayThereAndTheWayBackBothSay) {
   TornTwice map;
-  const RevisedMap both = map.revised(1.0);
-  EXPECT_GT(both.links[0].vouched[1], 0.0);
-  EXPECT_EQ(both.links[0].vouched[0], both.links[1].vouched[0]) << "where the map has it, both are the same as well";
+  const VerifiedMap both = map.verified(1.0);
+  EXPECT_GT(both.edges[0].parallel_support[1], 0.0);
+  EXPECT_EQ(both.edges[0].parallel_support[0], both.edges[1].parallel_support[0])
+      << "where the map has it, both are the same as well";
   TornTwice alone;
   alone.doubts[1].candidates.pop_back();
-  const RevisedMap one = alone.revised(1.0);
-  EXPECT_EQ(one.links[0].vouched[1], 0.0);
-  EXPECT_LT(one.links[0].probability, both.links[0].probability);
+  const VerifiedMap one = alone.verified(1.0);
+  EXPECT_EQ(one.edges[0].parallel_support[1], 0.0);
+  EXPECT_LT(one.edges[0].probability, both.edges[0].probability);
 }
 
 TEST(ReviseLinks, JoinsParallelLinksTogether) {
   TornTwice map;
   map.doubts[0].candidates[1].score = 8.0;
-  const RevisedMap revised = map.revised();
-  EXPECT_THAT(choices(revised), ElementsAre(1, 1));
-  EXPECT_EQ(revised.links[0].probability, revised.links[1].probability);
-  EXPECT_LT(test::worst_off_m(revised.map_from_node, map.truth), 1e-6);
+  const VerifiedMap verified = map.verified();
+  EXPECT_THAT(choices(verified), ElementsAre(1, 1));
+  EXPECT_EQ(verified.edges[0].probability, verified.edges[1].probability);
+  EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 1e-6);
 }
 
 TEST(ReviseLinks, LeavesParallelLinksOutThatSayOtherwise) {
   TornTwice map;
   map.doubts[0].candidates[1].score = 8.0;
   map.doubts[1].candidates[1].a_from_b = map.true_step(8) * kTooFar;
-  const RevisedMap revised = map.revised();
-  EXPECT_THAT(choices(revised), ElementsAre(1, kCut));
-  EXPECT_LE(revised.links[1].probability, 1.0 - revised.links[0].probability);
-  EXPECT_THAT(revised.piece_of_node, Each(revised.piece_of_node.front()));
-  EXPECT_LT(test::worst_off_m(revised.map_from_node, map.truth), 1e-6);
+  const VerifiedMap verified = map.verified();
+  EXPECT_THAT(choices(verified), ElementsAre(1, kCut));
+  EXPECT_LE(verified.edges[1].probability, 1.0 - verified.edges[0].probability);
+  EXPECT_THAT(verified.piece_of_node, Each(verified.piece_of_node.front()));
+  EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 1e-6);
 }
 
 /// Too far along the chain to tell each other anything, but not to be held together.
@@ -219,10 +221,10 @@ TEST(ReviseLinks, JoinsParallelLinksThatAreFarApart) {
   TornTwice map(24, 30);
   map.doubts[0].candidates[1].score = 8.0;
   map.doubts[1].candidates[1].a_from_b = map.true_step(24) * Pose2{0.5, 0.0, 0.0};
-  const RevisedMap revised = map.revised();
-  EXPECT_THAT(choices(revised), ElementsAre(1, 1));
-  EXPECT_EQ(revised.links[0].vouched[1], 0.0);
-  EXPECT_LT(test::worst_off_m(revised.map_from_node, map.truth), 1e-6);
+  const VerifiedMap verified = map.verified();
+  EXPECT_THAT(choices(verified), ElementsAre(1, 1));
+  EXPECT_EQ(verified.edges[0].parallel_support[1], 0.0);
+  EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 1e-6);
 }
 
 /// What nobody was asked about stays, unless it contradicts what was joined.
@@ -237,7 +239,7 @@ TEST(ReviseLinks, StopsBetweenTwoLinksThatContradictEachOther) {
   map.doubts[1].candidates.pop_back();
   const auto chosen = [&](int asked) {
     StopsAfter observer(asked);
-    return choices(revise_links(map.views, map.poses, map.pieces, map.doubts, {}, 0.7, 1, observer));
+    return choices(verify_edges(map.views, map.poses, map.pieces, map.doubts, {}, 0.7, 1, observer));
   };
   EXPECT_THAT(chosen(0), ElementsAre(0, 0));
   EXPECT_THAT(chosen(1), ElementsAre(1, kCut));
@@ -246,15 +248,15 @@ TEST(ReviseLinks, StopsBetweenTwoLinksThatContradictEachOther) {
 TEST(ReviseLinks, IsLessSureOfAPlaceThatTwoScansHoldInNoDirection) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
-  const double held = map.revised().links[0].probability;
+  const double held = map.verified().edges[0].probability;
   map.doubts[0].candidates[2].best_deviation_m = 10.0;
-  EXPECT_LT(map.revised().links[0].probability, held - 0.01);
+  EXPECT_LT(map.verified().edges[0].probability, held - 0.01);
 }
 
 TEST(ReviseLinks, TellsTheBestOfWhatIsNotJoined) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
-  const RevisedLink best = map.revised(1.0).links[0];
+  const VerifiedEdge best = map.verified(1.0).edges[0];
   EXPECT_EQ(best.candidate, 2U);
   EXPECT_GT(best.probability, 0.5);
   EXPECT_FALSE(best.joins);
@@ -266,16 +268,16 @@ TEST(ReviseLinks, LeavesAllAsItWasWhenAskedToStop) {
   } impatient;
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
-  const RevisedMap revised = revise_links(map.views, map.poses, map.pieces, map.doubts, {}, 0.7, 1, impatient);
-  EXPECT_THAT(choices(revised), ElementsAre(0));
-  EXPECT_LT(test::worst_off_m(revised.map_from_node, map.poses), 1e-6);
+  const VerifiedMap verified = verify_edges(map.views, map.poses, map.pieces, map.doubts, {}, 0.7, 1, impatient);
+  EXPECT_THAT(choices(verified), ElementsAre(0));
+  EXPECT_LT(test::worst_off_m(verified.map_from_node, map.poses), 1e-6);
 }
 
 TEST(ReviseLinks, IsTheSameToTheBitForAnyNumberOfThreads) {
   Torn map({3, 8});
-  for (DoubtfulLink& doubt : map.doubts) doubt.candidates.push_back({map.true_step(doubt.link), 0.0});
-  const RevisedMap one = map.revised(0.7, 1);
-  const RevisedMap three = map.revised(0.7, 3);
+  for (DoubtfulEdge& doubt : map.doubts) doubt.candidates.push_back({map.true_step(doubt.link), 0.0});
+  const VerifiedMap one = map.verified(0.7, 1);
+  const VerifiedMap three = map.verified(0.7, 3);
   EXPECT_EQ(choices(one), choices(three));
   for (std::size_t n = 0; n < map.poses.size(); ++n)
     EXPECT_THAT(three.map_from_node[n], HasSameBits(one.map_from_node[n]));

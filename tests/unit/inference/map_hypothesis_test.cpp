@@ -18,22 +18,22 @@ using ::testing::ElementsAre;
 
 /// Once round the ring and a bit more, with a loop where it meets itself and one that is wrong.
 struct Ring {
-  explicit Ring(double drift_rad = 0.0) : links(test::drifting_links(truth, drift_rad)) {}
+  explicit Ring(double drift_rad = 0.0) : edges(test::drifting_links(truth, drift_rad)) {}
 
-  LoopProblem problem() { return {views, links, clusters, {}, options, 1}; }
+  MapObjective problem() { return {views, edges, clusters, {}, options, 1}; }
 
   void spoil(std::size_t link, bool keep_right) {
-    std::vector<ChainLink::Alternative>& alternatives = links[link].alternatives;
-    const ChainLink::Alternative right = alternatives[0];
-    alternatives[0].a_from_b = right.a_from_b * Pose2{0.3, -0.5, 70 * kDegree};
-    alternatives[0].score = 1.0;
-    if (keep_right) alternatives.push_back(right);
-    links[link].probability = 0.4;
+    std::vector<EdgeChoices::Candidate>& candidates = edges[link].candidates;
+    const EdgeChoices::Candidate right = candidates[0];
+    candidates[0].a_from_b = right.a_from_b * Pose2{0.3, -0.5, 70 * kDegree};
+    candidates[0].score = 1.0;
+    if (keep_right) candidates.push_back(right);
+    edges[link].probability = 0.4;
   }
 
   std::vector<Pose2> truth = test::ring_walk(kRingLap + 8, 2);
   test::Views views = test::views_along(test::ring_world(1), truth);
-  std::vector<ChainLink> links;
+  std::vector<EdgeChoices> edges;
   std::vector<LoopCluster> clusters{test::cluster_of(truth, 3, 28, 5, 18.0, {2.0, 0.0, 0.0}),
                                     test::cluster_of(truth, 0, kRingLap, 8, 12.0)};
   MapSearchOptions options;
@@ -42,19 +42,19 @@ struct Ring {
 TEST(LoopChoiceOfMap, TakesTheAlternativesAndLoopsThatAgreeWithTheMap) {
   Ring ring;
   ring.spoil(20, true);
-  const LoopChoice choice = ring.problem().of_map(ring.truth);
-  for (std::size_t i = 0; i < ring.links.size(); ++i) EXPECT_EQ(choice.link_choice[i], i == 20 ? 1 : 0) << i;
+  const MapHypothesis choice = ring.problem().of_map(ring.truth);
+  for (std::size_t i = 0; i < ring.edges.size(); ++i) EXPECT_EQ(choice.edge_choice[i], i == 20 ? 1 : 0) << i;
   EXPECT_THAT(choice.accepted, ElementsAre(0, 1));
   EXPECT_LT(test::worst_off_m(choice.map_from_node, ring.truth), 0.2);
   EXPECT_GT(choice.value, ring.problem().chain_alone().value + 20.0);
 }
 
-TEST(LoopChoice, RingsAreWhatLoopsHold) {
+TEST(MapHypothesis, RingsAreWhatLoopsHold) {
   Ring ring;
-  LoopProblem problem = ring.problem();
+  MapObjective problem = ring.problem();
   const std::vector<std::size_t> of_chain = problem.rings(problem.chain_alone());
   for (std::size_t n = 0; n < of_chain.size(); ++n) EXPECT_EQ(of_chain[n], n) << "each by itself";
-  LoopChoice cut = problem.of_map(ring.truth);
+  MapHypothesis cut = problem.of_map(ring.truth);
   const std::vector<std::size_t> closed = problem.rings(cut);
   for (std::size_t n = 0; n <= kRingLap; ++n) EXPECT_EQ(closed[n], 0U) << n;
   cut.accepted.assign(cut.accepted.size(), 0);
@@ -64,9 +64,9 @@ TEST(LoopChoice, RingsAreWhatLoopsHold) {
 TEST(LoopChoiceOfMap, CutsALinkThatDisagreesWhereALoopHoldsTheRest) {
   Ring ring;
   ring.spoil(20, false);
-  const LoopChoice choice = ring.problem().of_map(ring.truth);
+  const MapHypothesis choice = ring.problem().of_map(ring.truth);
   EXPECT_THAT(choice.accepted, ElementsAre(0, 1));
-  for (std::size_t i = 0; i < ring.links.size(); ++i) EXPECT_EQ(choice.link_choice[i], i == 20 ? kCut : 0) << i;
+  for (std::size_t i = 0; i < ring.edges.size(); ++i) EXPECT_EQ(choice.edge_choice[i], i == 20 ? kCut : 0) << i;
   EXPECT_LT(test::worst_off_m(choice.map_from_node, ring.truth), 0.2);
 }
 
@@ -75,9 +75,9 @@ TEST(LoopChoiceOfMap, LeavesWithTheChainWhatNothingElseJoins) {
   ring.clusters.clear();
   ring.spoil(20, false);
   ring.spoil(30, false);
-  const LoopChoice choice = ring.problem().of_map(ring.truth);
-  EXPECT_THAT(choice.link_choice, Each(0));
-  const std::vector<Pose2> chain = test::chained(ring.links, ring.truth[0]);
+  const MapHypothesis choice = ring.problem().of_map(ring.truth);
+  EXPECT_THAT(choice.edge_choice, Each(0));
+  const std::vector<Pose2> chain = test::chained(ring.edges, ring.truth[0]);
   for (std::size_t n = 0; n < chain.size(); ++n) {
     EXPECT_THAT(choice.map_from_node[n], test::IsNearPose(chain[n], 1e-4, 1e-4)) << n;
   }
@@ -85,12 +85,12 @@ TEST(LoopChoiceOfMap, LeavesWithTheChainWhatNothingElseJoins) {
 
 TEST(LoopChoiceOfMap, OfAnotherLogIsNotJoined) {
   Ring ring;
-  ring.links[20] = {};
-  LoopProblem problem = ring.problem();
-  const LoopChoice chain = problem.chain_alone();
-  const LoopChoice choice = problem.of_map(chain.map_from_node);
-  EXPECT_EQ(choice.link_choice, chain.link_choice);
-  EXPECT_EQ(choice.link_choice[20], kCut);
+  ring.edges[20] = {};
+  MapObjective problem = ring.problem();
+  const MapHypothesis chain = problem.chain_alone();
+  const MapHypothesis choice = problem.of_map(chain.map_from_node);
+  EXPECT_EQ(choice.edge_choice, chain.edge_choice);
+  EXPECT_EQ(choice.edge_choice[20], kCut);
   EXPECT_THAT(choice.accepted, Each(0));
 }
 
@@ -100,12 +100,12 @@ TEST(LoopChoiceWorth, IsLessByARivalThatTheMapContradicts) {
   ring.clusters = {test::cluster_of(ring.truth, 0, kRingLap, 4, 18.0),
                    test::cluster_of(ring.truth, 20, kRingLap, 4, 11.0, {4.0, 0.0, 0.0}),
                    test::cluster_of(ring.truth, 4, kRingLap + 4, 4, 30.0)};
-  LoopProblem problem = ring.problem();
-  const LoopChoice choice = problem.of_map(ring.truth);
+  MapObjective problem = ring.problem();
+  const MapHypothesis choice = problem.of_map(ring.truth);
   EXPECT_NEAR(problem.worth_in(choice, 0), 7.0, 1e-9);
   EXPECT_NEAR(problem.worth_in(choice, 2), 20.0, 1e-9) << "shares no node, and at most the cap";
   ring.clusters[1] = test::cluster_of(ring.truth, 1, kRingLap, 4, 11.0, {});
-  LoopProblem agreeing = ring.problem();
+  MapObjective agreeing = ring.problem();
   EXPECT_NEAR(agreeing.worth_in(agreeing.of_map(ring.truth), 0), 18.0, 1e-9);
 }
 
@@ -114,10 +114,10 @@ TEST(LoopChoiceValue, OfLoopsBetweenTheSameStretchesIsAtMostTheCap) {
   Ring ring;
   const auto gain_of_second = [&](std::size_t a, std::size_t b) {
     ring.clusters = {test::cluster_of(ring.truth, 0, kRingLap, 8, 18.0), test::cluster_of(ring.truth, a, b, 4, 12.0)};
-    LoopProblem problem = ring.problem();
-    LoopChoice both = problem.of_map(ring.truth);
+    MapObjective problem = ring.problem();
+    MapHypothesis both = problem.of_map(ring.truth);
     EXPECT_THAT(both.accepted, ElementsAre(1, 1));
-    LoopChoice one = both;
+    MapHypothesis one = both;
     one.accepted[1] = 0;
     problem.rate(one);
     problem.rate(both);
@@ -135,9 +135,9 @@ TEST(LoopChoiceValue, OfACutLinkIsLessTheBetterOneOfItsAlternativesFits) {
   Ring ring;
   ring.spoil(20, false);
   const double poor = ring.problem().of_map(ring.truth).value;
-  ring.links[20].any_probability = 0.999;
-  const LoopChoice well = ring.problem().of_map(ring.truth);
-  EXPECT_EQ(well.link_choice[20], kCut);
+  ring.edges[20].any_probability = 0.999;
+  const MapHypothesis well = ring.problem().of_map(ring.truth);
+  EXPECT_EQ(well.edge_choice[20], kCut);
   EXPECT_NEAR(poor - well.value, std::log(999.0) + 2.0 - (std::log(0.4 / 0.6) + 2.0), 1e-6);
 }
 
@@ -146,16 +146,16 @@ TEST(LoopChoiceValue, IsLessByUnusualTurns) {
   free.options.step_penalty = 0.0;
   Ring costly;
   costly.options.step_penalty = 8.0;
-  free.links[20].probability = costly.links[20].probability = 0.9;
-  LoopProblem without = free.problem();
-  LoopProblem with = costly.problem();
-  const auto penalty = [&](LoopChoice choice) {
-    LoopChoice same = choice;
+  free.edges[20].probability = costly.edges[20].probability = 0.9;
+  MapObjective without = free.problem();
+  MapObjective with = costly.problem();
+  const auto penalty = [&](MapHypothesis choice) {
+    MapHypothesis same = choice;
     without.rate(choice);
     with.rate(same);
     return choice.value - same.value;
   };
-  LoopChoice map = without.of_map(free.truth);
+  MapHypothesis map = without.of_map(free.truth);
   EXPECT_NEAR(penalty(map), 0.0, 1e-9);
   map.map_from_node[21].theta_rad += 180 * kDegree;
   EXPECT_GT(penalty(map), 4.0);
@@ -164,10 +164,10 @@ TEST(LoopChoiceValue, IsLessByUnusualTurns) {
 /// Without loops that agree, the chain is what it was.
 TEST(LoopChoiceOfMap, OfTheChainIsTheChain) {
   Ring ring(1.0 * kDegree);
-  LoopProblem problem = ring.problem();
-  const LoopChoice chain = problem.chain_alone();
-  const LoopChoice choice = problem.of_map(chain.map_from_node);
-  EXPECT_EQ(choice.link_choice, chain.link_choice);
+  MapObjective problem = ring.problem();
+  const MapHypothesis chain = problem.chain_alone();
+  const MapHypothesis choice = problem.of_map(chain.map_from_node);
+  EXPECT_EQ(choice.edge_choice, chain.edge_choice);
   EXPECT_EQ(choice.accepted, chain.accepted);
   EXPECT_NEAR(choice.value, chain.value, 1e-6);
   for (std::size_t n = 0; n < chain.map_from_node.size(); ++n) {

@@ -49,15 +49,15 @@ TEST(NearPairs, OnTheBordersOfCellsAreNotLost) {
   EXPECT_TRUE(near_pairs({}, 1.0).empty());
 }
 
-TEST(MapEvidence, OfAPairGrowsWithWhatAgreesAndFallsWithWhatIsCrossed) {
+TEST(MapScore, OfAPairGrowsWithWhatAgreesAndFallsWithWhatIsCrossed) {
   const auto of = [](double agree, double crossed) {
     Visibility seen;
     seen.agree = agree;
     seen.crossed = crossed;
     seen.hidden = 1.0 - agree - crossed;
-    return MapEvidence::of_pair(seen);
+    return MapScore::of_pair(seen);
   };
-  EXPECT_EQ(MapEvidence::of_pair({}), 0.0);
+  EXPECT_EQ(MapScore::of_pair({}), 0.0);
   EXPECT_NEAR(of(0.0, 0.0), 0.0, 1e-12) << "neither sees what the other does";
   EXPECT_GT(of(0.3, 0.0), 0.0);
   EXPECT_LT(of(0.0, 0.3), 0.0);
@@ -71,37 +71,37 @@ TEST(MapEvidence, OfAPairGrowsWithWhatAgreesAndFallsWithWhatIsCrossed) {
 struct Ring {
   std::vector<Pose2> truth = test::ring_walk(test::kRingLap + 8, 2);
   test::Views views = test::views_along(test::ring_world(1), truth);
-  MapEvidence evidence{views, {}, 1};
+  MapScore score{views, {}, 1};
 };
 
-TEST(MapEvidence, IsBestForTheTruthAndWorseTheMoreTheMapIsBent) {
+TEST(MapScore, IsBestForTheTruthAndWorseTheMoreTheMapIsBent) {
   Ring ring;
-  double before = ring.evidence.of(ring.truth);
+  double before = ring.score.of(ring.truth);
   EXPECT_GT(before, 0.0);
   for (const double drift_deg : {0.4, 1.2}) {
     const std::vector<Pose2> bent = test::chained(test::drifting_links(ring.truth, drift_deg * kDegree));
-    const double value = ring.evidence.of(bent);
+    const double value = ring.score.of(bent);
     EXPECT_LT(value, before - 10.0) << drift_deg;
     before = value;
   }
 }
 
 /// Two laps of a chain that is bent: where a loop should hold the second to the first, and where none does.
-TEST(MapEvidence, OfWhatOnlyALongChainHoldsCountsLittle) {
+TEST(MapScore, OfWhatOnlyALongChainHoldsCountsLittle) {
   const std::vector<Pose2> truth = test::ring_walk(2 * test::kRingLap, 2);
   const test::Views views = test::views_along(test::ring_world(1), truth);
   const std::vector<Pose2> bent = test::chained(test::drifting_links(truth, 1.2 * kDegree));
   ASSERT_GT(truth.size(), 45U) << "some pairs are far along the chain";
   std::vector<std::size_t> one_each(truth.size());
   std::iota(one_each.begin(), one_each.end(), std::size_t{0});
-  MapEvidence evidence(views, {}, 1);
+  MapScore score(views, {}, 1);
   const std::vector<std::size_t> one_ring(truth.size(), 0);
-  EXPECT_EQ(evidence.of(bent, one_ring), evidence.of(bent));
-  EXPECT_GT(evidence.of(bent, one_each), evidence.of(bent) + 1.0);
-  EXPECT_LE(evidence.of(truth, one_each), evidence.of(truth));
+  EXPECT_EQ(score.of(bent, one_ring), score.of(bent));
+  EXPECT_GT(score.of(bent, one_each), score.of(bent) + 1.0);
+  EXPECT_LE(score.of(truth, one_each), score.of(truth));
 }
 
-TEST(MapEvidence, TellsAgainstTwoPlacesOnTopOfEachOther) {
+TEST(MapScore, TellsAgainstTwoPlacesOnTopOfEachOther) {
   std::mt19937 rng(2);
   std::vector<Pose2> poses;
   test::Views views;
@@ -114,44 +114,44 @@ TEST(MapEvidence, TellsAgainstTwoPlacesOnTopOfEachOther) {
   }
   std::vector<Pose2> apart = poses;
   for (std::size_t n = 6; n < 12; ++n) apart[n].x_m += 1000.0;
-  MapEvidence evidence(views, {}, 1);
-  EXPECT_GT(evidence.of(apart), evidence.of(poses) + 10.0);
+  MapScore score(views, {}, 1);
+  EXPECT_GT(score.of(apart), score.of(poses) + 10.0);
 }
 
-TEST(MapEvidence, IsNoneWhereNoTwoStretchesMeet) {
+TEST(MapScore, IsNoneWhereNoTwoStretchesMeet) {
   std::vector<Pose2> straight;
   for (int k = 0; k < 6; ++k) straight.push_back({7.0 * k, 0.0, 0.0});
-  MapEvidence evidence(test::views_along(test::ring_world(1), test::ring_walk(6, 1)), {}, 1);
-  EXPECT_EQ(evidence.of(straight), 0.0);
-  EXPECT_EQ(MapEvidence({}, {}, 1).of({}), 0.0);
+  MapScore score(test::views_along(test::ring_world(1), test::ring_walk(6, 1)), {}, 1);
+  EXPECT_EQ(score.of(straight), 0.0);
+  EXPECT_EQ(MapScore({}, {}, 1).of({}), 0.0);
 }
 
 /// Where all are: not how the map lies.
-TEST(MapEvidence, DoesNotDependOnTheFrameOfTheMap) {
+TEST(MapScore, DoesNotDependOnTheFrameOfTheMap) {
   Ring ring;
   std::vector<Pose2> elsewhere = ring.truth;
   for (Pose2& pose : elsewhere) pose = Pose2{3.0, -40.0, 2.0} * pose;
-  const double value = MapEvidence(ring.views, {}, 1).of(ring.truth);
-  EXPECT_NEAR(MapEvidence(ring.views, {}, 1).of(elsewhere), value, 1e-3 * value);
+  const double value = MapScore(ring.views, {}, 1).of(ring.truth);
+  EXPECT_NEAR(MapScore(ring.views, {}, 1).of(elsewhere), value, 1e-3 * value);
 }
 
-TEST(MapEvidence, ThatRemembersGivesWhatAFreshOneGives) {
+TEST(MapScore, ThatRemembersGivesWhatAFreshOneGives) {
   Ring ring;
   const std::vector<Pose2> bent = test::chained(test::drifting_links(ring.truth, 1.0 * kDegree), ring.truth[0]);
-  const auto fresh = [&](const std::vector<Pose2>& poses) { return MapEvidence(ring.views, {}, 1).of(poses); };
-  const double of_truth = ring.evidence.of(ring.truth);
-  const double of_bent = ring.evidence.of(bent);
+  const auto fresh = [&](const std::vector<Pose2>& poses) { return MapScore(ring.views, {}, 1).of(poses); };
+  const double of_truth = ring.score.of(ring.truth);
+  const double of_bent = ring.score.of(bent);
   EXPECT_EQ(of_truth, fresh(ring.truth));
   EXPECT_NEAR(of_bent, fresh(bent), 0.05 * std::abs(of_truth - of_bent));
-  EXPECT_NEAR(ring.evidence.of(ring.truth), of_truth, 0.05 * std::abs(of_truth - of_bent));
+  EXPECT_NEAR(ring.score.of(ring.truth), of_truth, 0.05 * std::abs(of_truth - of_bent));
 }
 
 /// Going round again and again tells less and less: else the more places are laid on each other, the better.
-TEST(MapEvidence, GrowsByNoMoreThanOneForEachNodeHoweverOftenItsPlaceIsPassed) {
+TEST(MapScore, GrowsByNoMoreThanOneForEachNodeHoweverOftenItsPlaceIsPassed) {
   double before = 0.0;
   for (const std::size_t laps : {1U, 2U, 4U}) {
     const std::vector<Pose2> truth = test::ring_walk(laps * test::kRingLap, 2);
-    const double now = MapEvidence(test::views_along(test::ring_world(1), truth), {}, 1).of(truth);
+    const double now = MapScore(test::views_along(test::ring_world(1), truth), {}, 1).of(truth);
     if (laps > 1) {
       const double of_stretches = now - static_cast<double>(laps) * before;
       EXPECT_GT(of_stretches, 0.0) << laps;
@@ -163,22 +163,22 @@ TEST(MapEvidence, GrowsByNoMoreThanOneForEachNodeHoweverOftenItsPlaceIsPassed) {
 }
 
 /// Many small steps are a large one: what is remembered must not creep along.
-TEST(MapEvidence, ThatRemembersDoesNotFallBehind) {
+TEST(MapScore, ThatRemembersDoesNotFallBehind) {
   Ring ring;
   std::vector<Pose2> creeping = ring.truth;
-  const double at_first = ring.evidence.of(creeping);
+  const double at_first = ring.score.of(creeping);
   for (int step = 0; step < 60; ++step) {
     for (std::size_t n = test::kRingLap; n < creeping.size(); ++n) creeping[n].y_m += 0.01;
-    ring.evidence.of(creeping);
+    ring.score.of(creeping);
   }
-  const double at_last = ring.evidence.of(creeping);
+  const double at_last = ring.score.of(creeping);
   EXPECT_LT(at_last, at_first - 20.0);
-  EXPECT_NEAR(at_last, MapEvidence(ring.views, {}, 1).of(creeping), 0.1 * (at_first - at_last));
+  EXPECT_NEAR(at_last, MapScore(ring.views, {}, 1).of(creeping), 0.1 * (at_first - at_last));
 }
 
-TEST(MapEvidence, IsTheSameToTheBitForAnyNumberOfThreads) {
+TEST(MapScore, IsTheSameToTheBitForAnyNumberOfThreads) {
   Ring ring;
-  EXPECT_EQ(MapEvidence(ring.views, {}, 3).of(ring.truth), ring.evidence.of(ring.truth));
+  EXPECT_EQ(MapScore(ring.views, {}, 3).of(ring.truth), ring.score.of(ring.truth));
 }
 
 /// Two pieces of a map, each moved to a frame of its own, and what they say of each other.
@@ -188,9 +188,7 @@ struct TwoPieces {
     for (const std::size_t n : g) pose[n] = inverse(f_from_g) * pose[n];
   }
 
-  double between(MapEvidence& evidence, const Pose2& moved = {}) const {
-    return evidence.between(pose, f, g, moved * f_from_g);
-  }
+  double between(MapScore& score, const Pose2& moved = {}) const { return score.between(pose, f, g, moved * f_from_g); }
 
   /// How much a map is worth in which the pieces lie so, more than one in which they are far from each other.
   double by_whole_maps(const test::Views& views, const Pose2& moved = {}) const {
@@ -202,7 +200,7 @@ struct TwoPieces {
       if (std::count(f.begin(), f.end(), n) + std::count(g.begin(), g.end(), n) > 0) continue;
       together[n] = apart[n] = {0.0, 1e4 * static_cast<double>(n + 1), 0.0};
     }
-    return MapEvidence(views, {}, 1).of(together) - MapEvidence(views, {}, 1).of(apart);
+    return MapScore(views, {}, 1).of(together) - MapScore(views, {}, 1).of(apart);
   }
 
   Pose2 f_from_g{3.0, -40.0, 2.0};
@@ -234,12 +232,12 @@ TEST(MapEvidenceBetween, IsWhatAWholeMapGainsByThePairsOfBothPieces) {
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const double right = cases[k].by_whole_maps(ring.views);
     EXPECT_GT(right, 2.0) << k;
-    EXPECT_NEAR(cases[k].between(ring.evidence), right, 1e-3 * right) << k;
+    EXPECT_NEAR(cases[k].between(ring.score), right, 1e-3 * right) << k;
     std::mt19937 rng(5);
     for (int round = 0; round < 4; ++round) {
       const Pose2 moved = test::random_pose(rng, 2.0, 0.5);
       const double expected = cases[k].by_whole_maps(ring.views, moved);
-      MapEvidence fresh(ring.views, {}, 1);
+      MapScore fresh(ring.views, {}, 1);
       EXPECT_NEAR(cases[k].between(fresh, moved), expected, 1e-3 * std::abs(expected) + 1e-3) << k;
     }
   }
@@ -248,21 +246,20 @@ TEST(MapEvidenceBetween, IsWhatAWholeMapGainsByThePairsOfBothPieces) {
 TEST(MapEvidenceBetween, DoesNotDependOnWhichPieceComesFirst) {
   Ring ring;
   const TwoPieces pieces(ring.truth, nodes(0, 12, kAll), nodes(46, 58, kAll));
-  const double one = pieces.between(ring.evidence);
-  const double other =
-      MapEvidence(ring.views, {}, 1).between(pieces.pose, pieces.g, pieces.f, inverse(pieces.f_from_g));
+  const double one = pieces.between(ring.score);
+  const double other = MapScore(ring.views, {}, 1).between(pieces.pose, pieces.g, pieces.f, inverse(pieces.f_from_g));
   EXPECT_NEAR(one, other, 1e-3 * one);
 }
 
 /// Of all pairs, each asked by itself. What a pair that tells for the map is worth is found from what is left of it
 /// when both nodes gain half of it, at most 1 each.
 double by_each_pair(const TwoPieces& pieces, const test::Views& views, const Pose2& moved) {
-  MapEvidence evidence(views, {}, 1);
+  MapScore score(views, {}, 1);
   double sum = 0.0;
   std::map<std::size_t, double> gained;
   for (const std::size_t i : pieces.f) {
     for (const std::size_t j : pieces.g) {
-      const double left = evidence.between(pieces.pose, {i}, {j}, moved * pieces.f_from_g);
+      const double left = score.between(pieces.pose, {i}, {j}, moved * pieces.f_from_g);
       const bool is_of_one_stretch = std::max(i, j) - std::min(i, j) < 8;
       if (left < 0.0 || is_of_one_stretch) {
         sum += left;
@@ -283,20 +280,20 @@ TEST(MapEvidenceBetween, OfManyPairsIsEstimatedWell) {
   const test::Views views = test::views_along(test::ring_world(1), truth);
   const TwoPieces pieces(truth, nodes(0, 100, kAll), nodes(100, 160, kAll));
   for (const Pose2& moved : {Pose2{}, Pose2{1.0, -1.0, 0.2}}) {
-    MapEvidence evidence(views, {}, 1);
+    MapScore score(views, {}, 1);
     const double expected = by_each_pair(pieces, views, moved);
-    EXPECT_NEAR(pieces.between(evidence, moved), expected, 0.15 * std::abs(expected));
-    MapEvidence by_three(views, {}, 3);
-    EXPECT_EQ(pieces.between(by_three, moved), pieces.between(evidence, moved)) << "to the bit";
+    EXPECT_NEAR(pieces.between(score, moved), expected, 0.15 * std::abs(expected));
+    MapScore by_three(views, {}, 3);
+    EXPECT_EQ(pieces.between(by_three, moved), pieces.between(score, moved)) << "to the bit";
   }
 }
 
 TEST(MapEvidenceBetween, IsNoneOfPiecesThatDoNotMeet) {
   Ring ring;
   const TwoPieces pieces(ring.truth, nodes(0, 12, kAll), nodes(46, 58, kAll));
-  EXPECT_EQ(pieces.between(ring.evidence, {100.0, 0.0, 0.0}), 0.0);
-  EXPECT_EQ(ring.evidence.between(ring.truth, {}, {1, 2}, {}), 0.0);
-  EXPECT_EQ(ring.evidence.between(ring.truth, {3}, {4}, {}), 0.0) << "neighbours tell nothing new";
+  EXPECT_EQ(pieces.between(ring.score, {100.0, 0.0, 0.0}), 0.0);
+  EXPECT_EQ(ring.score.between(ring.truth, {}, {1, 2}, {}), 0.0);
+  EXPECT_EQ(ring.score.between(ring.truth, {3}, {4}, {}), 0.0) << "neighbours tell nothing new";
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ constexpr double kGood_m = 0.35;
 
 /// A ring that is walked once and a bit, with a chain that drifts to the left all the time.
 struct Ring {
-  explicit Ring(double drift_rad = 0.5 * kDegree) : links(test::drifting_links(truth, drift_rad)) {}
+  explicit Ring(double drift_rad = 0.5 * kDegree) : edges(test::drifting_links(truth, drift_rad)) {}
 
   LoopCluster again(double strength) const { return test::cluster_of(truth, 0, kRingLap, kAgain, strength); }
 
@@ -37,25 +37,25 @@ struct Ring {
     return test::cluster_of(truth, 3, 28, 5, strength, far_to_near);
   }
 
-  LoopSolution closed(const std::vector<LoopCluster>& clusters, RunObserver& observer, int threads = 1) const {
-    return close_loops(views, links, {}, clusters, {}, {}, threads, observer);
+  MapSolution closed(const std::vector<LoopCluster>& clusters, RunObserver& observer, int threads = 1) const {
+    return close_loops(views, edges, {}, clusters, {}, {}, threads, observer);
   }
-  LoopSolution closed(const std::vector<LoopCluster>& clusters, int threads = 1) const {
+  MapSolution closed(const std::vector<LoopCluster>& clusters, int threads = 1) const {
     RunObserver nobody;
     return closed(clusters, nobody, threads);
   }
 
   std::vector<Pose2> truth = test::ring_walk(kRingLap + kAgain, 2);
   test::Views views = test::views_along(test::ring_world(1), truth);
-  std::vector<ChainLink> links;
+  std::vector<EdgeChoices> edges;
 };
 
-void expect_same_bits(const LoopSolution& a, const LoopSolution& b) {
+void expect_same_bits(const MapSolution& a, const MapSolution& b) {
   ASSERT_EQ(a.map_from_node.size(), b.map_from_node.size());
   for (std::size_t n = 0; n < a.map_from_node.size(); ++n) {
     EXPECT_THAT(a.map_from_node[n], HasSameBits(b.map_from_node[n])) << n;
   }
-  EXPECT_EQ(a.link_choice, b.link_choice);
+  EXPECT_EQ(a.edge_choice, b.edge_choice);
   EXPECT_EQ(a.accepted, b.accepted);
   EXPECT_EQ(a.component, b.component);
   EXPECT_EQ(a.value, b.value);
@@ -63,11 +63,11 @@ void expect_same_bits(const LoopSolution& a, const LoopSolution& b) {
 
 TEST(CloseLoops, WithoutLoopsLeavesTheChainAsItIs) {
   const Ring ring;
-  const LoopSolution solution = ring.closed({});
+  const MapSolution solution = ring.closed({});
   EXPECT_THAT(solution.accepted, IsEmpty());
-  EXPECT_THAT(solution.link_choice, Each(0));
+  EXPECT_THAT(solution.edge_choice, Each(0));
   EXPECT_THAT(solution.component, Each(0));
-  const std::vector<Pose2> chain = test::chained(ring.links);
+  const std::vector<Pose2> chain = test::chained(ring.edges);
   for (std::size_t n = 0; n < chain.size(); ++n) {
     EXPECT_THAT(solution.map_from_node[n], test::IsNearPose(chain[n], 1e-9, 1e-9));
   }
@@ -75,10 +75,10 @@ TEST(CloseLoops, WithoutLoopsLeavesTheChainAsItIs) {
 
 TEST(CloseLoops, ClosesARingThatHasDriftedApart) {
   const Ring ring;
-  ASSERT_GT(test::worst_off_m(test::chained(ring.links), ring.truth), 1.5);
-  const LoopSolution solution = ring.closed({ring.again(12.0)});
+  ASSERT_GT(test::worst_off_m(test::chained(ring.edges), ring.truth), 1.5);
+  const MapSolution solution = ring.closed({ring.again(12.0)});
   EXPECT_THAT(solution.accepted, ElementsAre(0));
-  EXPECT_THAT(solution.link_choice, Each(0));
+  EXPECT_THAT(solution.edge_choice, Each(0));
   EXPECT_THAT(solution.component, Each(0));
   EXPECT_LT(test::worst_off_m(solution.map_from_node, ring.truth), kGood_m);
   EXPECT_GT(solution.value, ring.closed({}).value);
@@ -86,10 +86,10 @@ TEST(CloseLoops, ClosesARingThatHasDriftedApart) {
 
 TEST(CloseLoops, RefusesALoopThatIsWrongHoweverStrong) {
   const Ring ring;
-  const LoopSolution alone = ring.closed({ring.wrong(18.0)});
+  const MapSolution alone = ring.closed({ring.wrong(18.0)});
   EXPECT_THAT(alone.accepted, IsEmpty());
   EXPECT_EQ(alone.value, ring.closed({}).value);
-  const LoopSolution both = ring.closed({ring.wrong(18.0), ring.again(12.0)});
+  const MapSolution both = ring.closed({ring.wrong(18.0), ring.again(12.0)});
   EXPECT_THAT(both.accepted, ElementsAre(1));
   EXPECT_LT(test::worst_off_m(both.map_from_node, ring.truth), kGood_m);
 }
@@ -97,7 +97,7 @@ TEST(CloseLoops, RefusesALoopThatIsWrongHoweverStrong) {
 /// The graph could bear it; the scans speak against it.
 TEST(CloseLoops, RefusesALoopThatPullsScansThatAgreeApart) {
   Ring ring(0.0);
-  for (ChainLink& link : ring.links) link.alternatives[0].covariance = test::covariance_of(0.3, 10 * kDegree);
+  for (EdgeChoices& link : ring.edges) link.candidates[0].covariance = test::covariance_of(0.3, 10 * kDegree);
   const auto shifted_by = [&](double shift_m) {
     return test::cluster_of(ring.truth, 0, kRingLap, kAgain, 12.0, {shift_m, 0.0, 0.0});
   };
@@ -113,26 +113,26 @@ TEST(CloseLoops, LeavesAloneWhatIsTooWeak) {
 TEST(CloseLoops, TakesTheOtherAlternativeOfALinkThatLoopsContradict) {
   Ring ring(0.1 * kDegree);
   constexpr std::size_t kBad = 20;
-  ChainLink& bad = ring.links[kBad];
-  const Pose2 right = bad.alternatives[0].a_from_b;
-  bad.alternatives = {{right * Pose2{0.3, -0.5, 70 * kDegree}, test::covariance_of(0.03, 1 * kDegree), 1.0},
-                      {right, test::covariance_of(0.03, 1 * kDegree), 0.0}};
+  EdgeChoices& bad = ring.edges[kBad];
+  const Pose2 right = bad.candidates[0].a_from_b;
+  bad.candidates = {{right * Pose2{0.3, -0.5, 70 * kDegree}, test::covariance_of(0.03, 1 * kDegree), 1.0},
+                    {right, test::covariance_of(0.03, 1 * kDegree), 0.0}};
   bad.probability = 0.4;
-  const LoopSolution solution = ring.closed({ring.again(12.0)});
+  const MapSolution solution = ring.closed({ring.again(12.0)});
   EXPECT_THAT(solution.accepted, ElementsAre(0));
-  for (std::size_t i = 0; i < ring.links.size(); ++i) EXPECT_EQ(solution.link_choice[i], i == kBad ? 1 : 0) << i;
+  for (std::size_t i = 0; i < ring.edges.size(); ++i) EXPECT_EQ(solution.edge_choice[i], i == kBad ? 1 : 0) << i;
   EXPECT_LT(test::worst_off_m(solution.map_from_node, ring.truth), kGood_m);
 }
 
 TEST(CloseLoops, CutsALinkThatIsWrongWithoutAnAlternative) {
   Ring ring(0.05 * kDegree);
   constexpr std::size_t kBad = 20;
-  ChainLink& bad = ring.links[kBad];
-  bad.alternatives[0].a_from_b = bad.alternatives[0].a_from_b * Pose2{0.3, -0.5, 70 * kDegree};
+  EdgeChoices& bad = ring.edges[kBad];
+  bad.candidates[0].a_from_b = bad.candidates[0].a_from_b * Pose2{0.3, -0.5, 70 * kDegree};
   bad.probability = 0.3;
-  const LoopSolution solution = ring.closed({ring.again(16.0)});
+  const MapSolution solution = ring.closed({ring.again(16.0)});
   EXPECT_THAT(solution.accepted, ElementsAre(0));
-  for (std::size_t i = 0; i < ring.links.size(); ++i) EXPECT_EQ(solution.link_choice[i], i == kBad ? kCut : 0) << i;
+  for (std::size_t i = 0; i < ring.edges.size(); ++i) EXPECT_EQ(solution.edge_choice[i], i == kBad ? kCut : 0) << i;
   EXPECT_THAT(solution.component, Each(0)) << "the loop holds what comes after it";
   EXPECT_LT(test::worst_off_m(solution.map_from_node, ring.truth), 2 * kGood_m);
 }
@@ -142,11 +142,11 @@ TEST(CloseLoops, CutsALinkThatIsWrongWithoutAnAlternative) {
 void turn_node(Ring& ring, std::size_t node) {
   const Pose2 turned{0.0, 0.0, kPi};
   for (const std::size_t i : {node - 1, node}) {
-    ChainLink& link = ring.links[i];
-    const Pose2 right = link.alternatives[0].a_from_b;
-    link.alternatives.push_back(link.alternatives[0]);
-    link.alternatives[0].a_from_b = i < node ? right * turned : turned * right;
-    link.alternatives[0].score = 1.0;
+    EdgeChoices& link = ring.edges[i];
+    const Pose2 right = link.candidates[0].a_from_b;
+    link.candidates.push_back(link.candidates[0]);
+    link.candidates[0].a_from_b = i < node ? right * turned : turned * right;
+    link.candidates[0].score = 1.0;
     link.probability = 0.5;
   }
 }
@@ -154,9 +154,9 @@ void turn_node(Ring& ring, std::size_t node) {
 TEST(CloseLoops, TakesTwoAlternativesThatOnlyTogetherAreBetter) {
   Ring ring(0.1 * kDegree);
   turn_node(ring, 20);
-  const LoopSolution solution = ring.closed({ring.again(12.0)});
-  for (std::size_t i = 0; i < ring.links.size(); ++i) {
-    EXPECT_EQ(solution.link_choice[i], i == 19 || i == 20 ? 1 : 0) << i;
+  const MapSolution solution = ring.closed({ring.again(12.0)});
+  for (std::size_t i = 0; i < ring.edges.size(); ++i) {
+    EXPECT_EQ(solution.edge_choice[i], i == 19 || i == 20 ? 1 : 0) << i;
   }
   EXPECT_THAT(solution.accepted, ElementsAre(0));
   EXPECT_LT(test::worst_off_m(solution.map_from_node, ring.truth), kGood_m);
@@ -169,15 +169,15 @@ TEST(CloseLoops, IsAtLeastAsGoodWithHypothesesAsWithout) {
   for (std::size_t bad = 8; bad <= 40; bad += 8) {
     Ring ring(0.1 * kDegree);
     turn_node(ring, bad + 4);
-    ChainLink::Alternative& wrong = ring.links[bad].alternatives[0];
+    EdgeChoices::Candidate& wrong = ring.edges[bad].candidates[0];
     wrong.a_from_b = wrong.a_from_b * Pose2{0.3, -0.5, 70 * kDegree};
-    ring.links[bad].probability = 0.3;
+    ring.edges[bad].probability = 0.3;
     const std::vector<LoopCluster> clusters{test::cluster_of(ring.truth, bad - 1, bad + 1, 2, 8.0)};
-    const auto closed = [&](const std::vector<LoopHypothesis>& hypotheses) {
-      return close_loops(ring.views, ring.links, hypotheses, clusters, {}, {}, 1, nobody);
+    const auto closed = [&](const std::vector<LoopCandidate>& candidates) {
+      return close_loops(ring.views, ring.edges, candidates, clusters, {}, {}, 1, nobody);
     };
-    const LoopSolution with = closed(clusters[0].members);
-    const LoopSolution without = closed({});
+    const MapSolution with = closed(clusters[0].members);
+    const MapSolution without = closed({});
     EXPECT_GE(with.value, without.value) << bad;
     EXPECT_LT(test::worst_off_m(with.map_from_node, ring.truth), 1.0) << bad;
     gained += with.value - without.value;
@@ -192,34 +192,34 @@ struct TwoWalks {
     const test::Views more = test::views_along(test::ring_world(same_world ? 1 : 7), second, 50);
     truth.insert(truth.end(), second.begin(), second.end());
     views.insert(views.end(), more.begin(), more.end());
-    links = test::drifting_links(truth, 0.2 * kDegree);
-    links[kFirst - 1] = {};
+    edges = test::drifting_links(truth, 0.2 * kDegree);
+    edges[kFirst - 1] = {};
   }
 
-  LoopSolution closed(const std::vector<LoopCluster>& clusters) const {
+  MapSolution closed(const std::vector<LoopCluster>& clusters) const {
     RunObserver nobody;
-    return close_loops(views, links, {}, clusters, {}, {}, 1, nobody);
+    return close_loops(views, edges, {}, clusters, {}, {}, 1, nobody);
   }
 
   static constexpr std::size_t kFirst = 16;
   std::vector<Pose2> truth = test::ring_walk(kFirst, 5);
   test::Views views = test::views_along(test::ring_world(1), truth);
-  std::vector<ChainLink> links;
+  std::vector<EdgeChoices> edges;
 };
 
 TEST(CloseLoops, JoinsTwoPiecesOfOneWorld) {
   const TwoWalks walks(true);
-  const LoopSolution solution = walks.closed({test::cluster_of(walks.truth, 3, TwoWalks::kFirst, 8, 24.0)});
+  const MapSolution solution = walks.closed({test::cluster_of(walks.truth, 3, TwoWalks::kFirst, 8, 24.0)});
   EXPECT_THAT(solution.accepted, ElementsAre(0));
   EXPECT_THAT(solution.component, Each(0));
-  EXPECT_EQ(solution.link_choice[TwoWalks::kFirst - 1], kCut) << "the log has nothing to say there";
+  EXPECT_EQ(solution.edge_choice[TwoWalks::kFirst - 1], kCut) << "the log has nothing to say there";
   EXPECT_LT(test::worst_off_m(solution.map_from_node, walks.truth), kGood_m);
 }
 
 TEST(CloseLoops, KeepsTwoWorldsApart) {
   const TwoWalks walks(false);
   const LoopCluster wrong = test::cluster_of(walks.truth, 3, TwoWalks::kFirst, 8, 8.0);
-  for (const LoopSolution& solution : {walks.closed({}), walks.closed({wrong})}) {
+  for (const MapSolution& solution : {walks.closed({}), walks.closed({wrong})}) {
     EXPECT_THAT(solution.accepted, IsEmpty());
     for (std::size_t n = 0; n < walks.truth.size(); ++n) {
       EXPECT_EQ(solution.component[n], n < TwoWalks::kFirst ? 0U : TwoWalks::kFirst);
@@ -240,7 +240,7 @@ TEST(CloseLoops, DoesNotJoinPiecesThatTwoLoopsWouldJoinDifferently) {
   const TwoWalks walks(true);
   LoopCluster right = test::cluster_of(walks.truth, 3, TwoWalks::kFirst, 8, 24.0);
   LoopCluster rival = right;
-  for (LoopHypothesis& member : rival.members) member.a_from_b = member.a_from_b * Pose2{0.0, 0.0, kPi};
+  for (LoopCandidate& member : rival.members) member.a_from_b = member.a_from_b * Pose2{0.0, 0.0, kPi};
   rival.strength = 11.0;
   EXPECT_THAT(walks.closed({right, rival}).accepted, ElementsAre(0)) << "less than half as strong";
   rival.strength = 20.0;
@@ -249,19 +249,19 @@ TEST(CloseLoops, DoesNotJoinPiecesThatTwoLoopsWouldJoinDifferently) {
 
 TEST(CloseLoops, StoppedAtAnyTimeHasAWholeSolution) {
   Ring ring;
-  ring.links[20].probability = 0.4;
-  ring.links[20].alternatives.push_back(ring.links[20].alternatives[0]);
-  ring.links[20].alternatives[0].a_from_b.theta_rad += 0.8;
+  ring.edges[20].probability = 0.4;
+  ring.edges[20].candidates.push_back(ring.edges[20].candidates[0]);
+  ring.edges[20].candidates[0].a_from_b.theta_rad += 0.8;
   const std::vector<LoopCluster> clusters{ring.wrong(14.0), ring.again(12.0)};
   Patience patient(100000);
-  const LoopSolution whole = ring.closed(clusters, patient);
+  const MapSolution whole = ring.closed(clusters, patient);
   ASSERT_LT(patient.asked, 1000U);
   double value = -std::numeric_limits<double>::infinity();
   for (std::size_t times = 0; times <= patient.asked + 1; times += times < 8 ? 1 : 3) {
     Patience observer(times);
-    const LoopSolution solution = ring.closed(clusters, observer);
+    const MapSolution solution = ring.closed(clusters, observer);
     ASSERT_EQ(solution.map_from_node.size(), ring.truth.size());
-    ASSERT_EQ(solution.link_choice.size(), ring.links.size());
+    ASSERT_EQ(solution.edge_choice.size(), ring.edges.size());
     ASSERT_EQ(solution.component.size(), ring.truth.size());
     for (const Pose2& pose : solution.map_from_node) ASSERT_TRUE(std::isfinite(pose.x_m + pose.y_m + pose.theta_rad));
     for (const std::size_t k : solution.accepted) ASSERT_LT(k, clusters.size());
@@ -300,7 +300,7 @@ TEST(CloseLoops, AsksTheObserverFromOneThread) {
 TEST(CloseLoops, OfOneNodeIsThatNode) {
   RunObserver nobody;
   const test::Views views = test::views_along(test::ring_world(1), test::ring_walk(1, 1));
-  const LoopSolution solution = close_loops(views, {}, {}, {}, {}, {}, 1, nobody);
+  const MapSolution solution = close_loops(views, {}, {}, {}, {}, {}, 1, nobody);
   ASSERT_EQ(solution.map_from_node.size(), 1U);
   EXPECT_THAT(solution.map_from_node[0], HasSameBits(Pose2{}));
   EXPECT_THAT(solution.component, ElementsAre(0));

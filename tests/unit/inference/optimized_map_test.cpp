@@ -18,37 +18,37 @@ struct ImprobableChain {
     for (const auto& view : test::views_along(test::ring_world(1), test::ring_walk(3, 2, 4.0))) {
       chain.keyframes.push_back({chain.keyframes.size(), 0, view, {}, {}});
     }
-    chain.links.resize(2);
-    for (KeyframeLink& link : chain.links) {
-      link.hypotheses = {hypothesis_at(*chain.keyframes[0].view, *chain.keyframes[1].view, {3.0, 1.0, 1.0}, {})};
+    chain.edges.resize(2);
+    for (OdometryEdge& link : chain.edges) {
+      link.candidates = {candidate_at(*chain.keyframes[0].view, *chain.keyframes[1].view, {3.0, 1.0, 1.0}, {})};
       link.choice = {0, 0.0, {0.0}};
     }
   }
 
   std::vector<int> choices(Improbable improbable) const {
     RunObserver nobody;
-    return map_with_loops(chain, {}, improbable, options, {1, nobody}).link_choice;
+    return optimized_map(chain, {}, improbable, options, {1, nobody}).edge_choice;
   }
 
-  KeyframeChain chain;
+  KeyframeGraph chain;
   RobustOptions options;
 };
 
-TEST(KeyframeMap, ImprobableLinksOfTheBareChainAreCut) {
+TEST(OptimizedMap, ImprobableLinksOfTheBareChainAreCut) {
   const ImprobableChain walk;
-  ASSERT_LT(stated_probability(walk.chain.links[0]), walk.options.front_end.split_below);
-  const KeyframeMap map = map_of_chain(walk.chain, walk.options);
-  EXPECT_THAT(map.link_choice, Each(kCut));
+  ASSERT_LT(stated_probability(walk.chain.edges[0]), walk.options.front_end.split_below);
+  const OptimizedMap map = map_of_odometry(walk.chain, walk.options);
+  EXPECT_THAT(map.edge_choice, Each(kCut));
   EXPECT_THAT(map.component, ElementsAre(0, 1, 2));
 }
 
-TEST(KeyframeMap, UnlessTheLimitIsLower) {
+TEST(OptimizedMap, UnlessTheLimitIsLower) {
   ImprobableChain walk;
   walk.options.front_end.split_below = 0.0;
-  EXPECT_THAT(map_of_chain(walk.chain, walk.options).link_choice, Each(0));
+  EXPECT_THAT(map_of_odometry(walk.chain, walk.options).edge_choice, Each(0));
 }
 
-TEST(KeyframeMap, WhereAllScansWillJudgeThemTheyStay) {
+TEST(OptimizedMap, WhereAllScansWillJudgeThemTheyStay) {
   const ImprobableChain walk;
   EXPECT_THAT(walk.choices(Improbable::kIsCut), Each(kCut));
   EXPECT_THAT(walk.choices(Improbable::kStays), Each(0));

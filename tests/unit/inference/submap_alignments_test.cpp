@@ -93,7 +93,7 @@ struct TwoPieces {
     const std::size_t i = any_of(of_f);
     const std::size_t j = any_of(of_g);
     const Pose2 i_from_j = inverse(pose[i]) * said_f_from_g * pose[j] * test::random_pose(rng, error, error);
-    Joint joint;
+    SubmapCandidate joint;
     joint.constraint = rng() % 2 == 0 ? PoseConstraint{i, j, i_from_j, Eigen::Matrix3d::Identity(), 0.0}
                                       : PoseConstraint{j, i, inverse(i_from_j), Eigen::Matrix3d::Identity(), 0.0};
     joint.worth = worth;
@@ -115,10 +115,10 @@ struct TwoPieces {
     return pose[c.a] * c.a_from_b * inverse(pose[c.b]);
   }
 
-  std::vector<Way> ways(std::size_t piece_first = kF) const {
+  std::vector<SubmapAlignment> ways(std::size_t piece_first = kF) const {
     Nodes all(joints.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
-    return PieceJoints(joints, pose, piece).ways(piece_first, all);
+    return SubmapAlignments(joints, pose, piece).ways(piece_first, all);
   }
 
   std::mt19937 rng;
@@ -127,18 +127,18 @@ struct TwoPieces {
   Nodes of_g;
   std::vector<Pose2> pose;
   Nodes piece;
-  std::vector<Joint> joints;
+  std::vector<SubmapCandidate> joints;
 };
 
 TEST(Ways, ThatAllJointsSayAreOneWayThere) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
     TwoPieces pieces(seed);
     for (int k = 0; k < 12; ++k) pieces.add(pieces.f_from_g, 1.0 + pieces.any_worth(), 0.02);
-    const std::vector<Way> ways = pieces.ways();
+    const std::vector<SubmapAlignment> ways = pieces.ways();
     ASSERT_EQ(ways.size(), 1U) << seed;
     EXPECT_EQ(ways[0].joints.size(), 12U);
     EXPECT_THAT(ways[0].f_from_g, IsNearPose(pieces.f_from_g, 0.20, 1.2 * kDegree)) << seed;
-    const std::vector<Way> other_way = pieces.ways(kG);
+    const std::vector<SubmapAlignment> other_way = pieces.ways(kG);
     ASSERT_EQ(other_way.size(), 1U) << seed;
     EXPECT_THAT(inverse(other_way[0].f_from_g), IsNearPose(pieces.f_from_g, 0.20, 1.2 * kDegree)) << seed;
   }
@@ -165,7 +165,7 @@ TEST(Ways, ThatContradictEachOtherAreKeptApartAndTheSurestComesFirst) {
     const std::size_t a = pieces.add(pieces.f_from_g, 4.0);
     const std::size_t last = pieces.add(shifted, 1.0);
     const std::size_t b = pieces.add(pieces.f_from_g, 2.0);
-    const std::vector<Way> ways = pieces.ways();
+    const std::vector<SubmapAlignment> ways = pieces.ways();
     ASSERT_EQ(ways.size(), 3U) << seed;
     EXPECT_THAT(ways[0].joints, ElementsAre(best));
     EXPECT_THAT(ways[1].joints, UnorderedElementsAre(a, b));
@@ -224,7 +224,7 @@ TEST(Ways, HoldAllThatAgreesWithTheSurestThatIsLeft) {
     const TwoPieces pieces = doubtful_pieces(seed);
     std::set<std::size_t> left;
     for (std::size_t k = 0; k < pieces.joints.size(); ++k) left.insert(k);
-    for (const Way& way : pieces.ways()) {
+    for (const SubmapAlignment& way : pieces.ways()) {
       ASSERT_FALSE(left.empty()) << seed;
       const std::size_t surest = *std::max_element(left.begin(), left.end(), [&](std::size_t i, std::size_t j) {
         return pieces.joints[i].worth < pieces.joints[j].worth;
@@ -266,7 +266,7 @@ TEST(Ways, LieWhereTheirJointsHaveTheLeastErrors) {
   std::mt19937 rng(9);
   for (unsigned seed = 1; seed <= 25; ++seed) {
     const TwoPieces pieces = doubtful_pieces(seed);
-    for (const Way& way : pieces.ways()) {
+    for (const SubmapAlignment& way : pieces.ways()) {
       const double least = cost_of(pieces, way.joints, way.f_from_g);
       for (int k = 0; k < 30; ++k) {
         const double reach = std::pow(10.0, -1 - k % 4);
@@ -282,8 +282,9 @@ TEST(Holds, WhatIsNearEnoughToThePiece) {
   const std::size_t a = pieces.of_f[2];
   const std::size_t b = pieces.of_f[7];
   const auto holds = [&](const Pose2& off) {
-    const Joint joint{{a, b, inverse(pieces.pose[a]) * pieces.pose[b] * off, Eigen::Matrix3d::Identity(), 0.0}, 1.0, 0};
-    return PieceJoints(pieces.joints, pieces.pose, pieces.piece).holds(joint);
+    const SubmapCandidate joint{
+        {a, b, inverse(pieces.pose[a]) * pieces.pose[b] * off, Eigen::Matrix3d::Identity(), 0.0}, 1.0, 0};
+    return SubmapAlignments(pieces.joints, pieces.pose, pieces.piece).holds(joint);
   };
   EXPECT_TRUE(holds({}));
   EXPECT_TRUE(holds({0.0, 0.39, 0.0}));

@@ -23,51 +23,51 @@ const Pose2 kTurned{0.0, 0.0, kPi};
 /// A walk round the ring and a bit more, the links of which a test makes doubtful.
 struct Walk {
   explicit Walk(double drift_rad = 0.1 * kDegree, unsigned seed = 2)
-      : truth(test::ring_walk(kRingLap + 8, seed)), links(test::drifting_links(truth, drift_rad)), right(links) {}
+      : truth(test::ring_walk(kRingLap + 8, seed)), edges(test::drifting_links(truth, drift_rad)), right(edges) {}
 
   /// A wrong alternative comes first; the right one is as good as never, or comes second.
   void spoil(std::size_t link, const Pose2& wrong, bool keep_right = true) {
-    std::vector<ChainLink::Alternative>& alternatives = links[link].alternatives;
-    ChainLink::Alternative first = alternatives.front();
+    std::vector<EdgeChoices::Candidate>& candidates = edges[link].candidates;
+    EdgeChoices::Candidate first = candidates.front();
     first.a_from_b = wrong;
     first.score = 1.0;
-    if (!keep_right) alternatives.clear();
-    alternatives.insert(alternatives.begin(), first);
-    links[link].probability = 0.5;
+    if (!keep_right) candidates.clear();
+    candidates.insert(candidates.begin(), first);
+    edges[link].probability = 0.5;
   }
 
   /// As if the robot had turned round for one scan.
   void turn_node(std::size_t node) {
-    spoil(node - 1, links[node - 1].alternatives[0].a_from_b * kTurned);
-    spoil(node, inverse(kTurned) * links[node].alternatives[0].a_from_b);
+    spoil(node - 1, edges[node - 1].candidates[0].a_from_b * kTurned);
+    spoil(node, inverse(kTurned) * edges[node].candidates[0].a_from_b);
   }
 
-  std::vector<Pose2> assembled(const std::vector<LoopHypothesis>& hypotheses, RunObserver& observer, int variant = 0,
+  std::vector<Pose2> assembled(const std::vector<LoopCandidate>& candidates, RunObserver& observer, int variant = 0,
                                int threads = 1) const {
-    MapEvidence evidence(views, {}, threads);
-    return assembled_map(links, hypotheses, chain(), evidence, variant, observer);
+    MapScore score(views, {}, threads);
+    return merged_submaps(edges, candidates, chain(), score, variant, observer);
   }
-  std::vector<Pose2> assembled(const std::vector<LoopHypothesis>& hypotheses = {}, int variant = 0,
+  std::vector<Pose2> assembled(const std::vector<LoopCandidate>& candidates = {}, int variant = 0,
                                int threads = 1) const {
     RunObserver nobody;
-    return assembled(hypotheses, nobody, variant, threads);
+    return assembled(candidates, nobody, variant, threads);
   }
 
   /// By first alternatives; what belongs to another log is far away.
   std::vector<Pose2> chain() const {
     std::vector<Pose2> poses{{}};
-    for (const ChainLink& link : links) {
-      const Pose2 step = link.exists() ? link.alternatives[0].a_from_b : Pose2{1e4, 0.0, 0.0};
+    for (const EdgeChoices& link : edges) {
+      const Pose2 step = link.exists() ? link.candidates[0].a_from_b : Pose2{1e4, 0.0, 0.0};
       poses.push_back(poses.back() * step);
     }
     return poses;
   }
-  double worth(const std::vector<Pose2>& poses) const { return MapEvidence(views, {}, 1).of(poses); }
+  double worth(const std::vector<Pose2>& poses) const { return MapScore(views, {}, 1).of(poses); }
 
   std::vector<Pose2> truth;
   test::Views views = test::views_along(test::ring_world(1), truth);
-  std::vector<ChainLink> links;
-  std::vector<ChainLink> right;
+  std::vector<EdgeChoices> edges;
+  std::vector<EdgeChoices> right;
 };
 
 /// As one lies to the other, whatever the frame.
@@ -87,9 +87,9 @@ TEST(AssembledMap, TurnsANodeThatBothItsLinksHaveWrong) {
   Walk walk;
   walk.turn_node(20);
   Walk only_before = walk;
-  only_before.links[19] = walk.right[19];
+  only_before.edges[19] = walk.right[19];
   Walk only_after = walk;
-  only_after.links[20] = walk.right[20];
+  only_after.edges[20] = walk.right[20];
   ASSERT_LT(walk.worth(only_before.chain()), walk.worth(walk.chain())) << "one alternative alone makes it worse";
   ASSERT_LT(walk.worth(only_after.chain()), walk.worth(walk.chain()));
   expect_same_map(walk.assembled(), test::chained(walk.right));
@@ -102,8 +102,8 @@ std::vector<Pose2> best_of_all_choices(const Walk& walk, const std::vector<std::
   for (std::size_t choice = 0; choice < std::size_t{1} << doubtful.size(); ++choice) {
     Walk chosen = walk;
     for (std::size_t k = 0; k < doubtful.size(); ++k) {
-      std::vector<ChainLink::Alternative>& alternatives = chosen.links[doubtful[k]].alternatives;
-      if ((choice >> k & 1U) != 0) std::swap(alternatives[0], alternatives[1]);
+      std::vector<EdgeChoices::Candidate>& candidates = chosen.edges[doubtful[k]].candidates;
+      if ((choice >> k & 1U) != 0) std::swap(candidates[0], candidates[1]);
     }
     const double worth = walk.worth(chosen.chain());
     if (worth > most) best = chosen.chain();
@@ -117,10 +117,10 @@ TEST(AssembledMap, IsTheBestOfAllChoices) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     Walk walk(0.05 * kDegree, seed);
     std::set<std::size_t> doubtful;
-    while (doubtful.size() < 4) doubtful.insert(3 + rng() % (walk.links.size() - 6));
+    while (doubtful.size() < 4) doubtful.insert(3 + rng() % (walk.edges.size() - 6));
     for (const std::size_t link : doubtful) {
       const Pose2 wrong = Pose2{0.7, 0.0, 0.0} * test::random_pose(rng, 0.6, 2.0) * Pose2{0.0, 0.0, 40 * kDegree};
-      walk.spoil(link, walk.links[link].alternatives[0].a_from_b * wrong);
+      walk.spoil(link, walk.edges[link].candidates[0].a_from_b * wrong);
     }
     const std::vector<Pose2> best = best_of_all_choices(walk, {doubtful.begin(), doubtful.end()});
     expect_same_map(best, test::chained(walk.right));
@@ -130,12 +130,12 @@ TEST(AssembledMap, IsTheBestOfAllChoices) {
 
 TEST(AssembledMap, BridgesALinkThatHasNoRightAlternative) {
   Walk walk;
-  walk.spoil(20, walk.links[20].alternatives[0].a_from_b * Pose2{0.3, -0.5, 70 * kDegree}, false);
-  const std::vector<LoopHypothesis> bridge = test::cluster_of(walk.truth, 18, 21, 3, 0.0).members;
+  walk.spoil(20, walk.edges[20].candidates[0].a_from_b * Pose2{0.3, -0.5, 70 * kDegree}, false);
+  const std::vector<LoopCandidate> bridge = test::cluster_of(walk.truth, 18, 21, 3, 0.0).members;
   EXPECT_GT(test::worst_off_m(walk.assembled(), walk.truth), 5.0);
   EXPECT_LT(test::worst_off_m(walk.assembled(bridge), test::chained(walk.right)), 1.0);
-  std::vector<LoopHypothesis> wrong = bridge;
-  for (LoopHypothesis& hypothesis : wrong) hypothesis.a_from_b = hypothesis.a_from_b * kTurned;
+  std::vector<LoopCandidate> wrong = bridge;
+  for (LoopCandidate& candidate : wrong) candidate.a_from_b = candidate.a_from_b * kTurned;
   wrong.insert(wrong.end(), bridge.begin(), bridge.end());
   EXPECT_LT(test::worst_off_m(walk.assembled(wrong), test::chained(walk.right)), 1.0) << "the scans tell";
 }
@@ -145,12 +145,12 @@ TEST(AssembledMap, BridgesALinkThatHasNoRightAlternative) {
 TEST(AssembledMap, IsBentToWhatItsHypothesesSay) {
   for (const double drift_deg : {0.1, 0.15}) {
     Walk walk(drift_deg * kDegree);
-    walk.links[30].probability = 0.6;
-    const std::vector<LoopHypothesis> again = test::cluster_of(walk.truth, 0, kRingLap, 8, 0.0).members;
+    walk.edges[30].probability = 0.6;
+    const std::vector<LoopCandidate> again = test::cluster_of(walk.truth, 0, kRingLap, 8, 0.0).members;
     ASSERT_GT(test::worst_off_m(walk.assembled(), walk.truth), 0.5);
     const std::vector<Pose2> map = walk.assembled(again);
     EXPECT_LT(test::worst_off_m(map, walk.truth), 0.2);
-    EXPECT_THAT(inverse(map[30]) * map[31], IsNearPose(walk.links[30].alternatives[0].a_from_b, 0.05, 1 * kDegree));
+    EXPECT_THAT(inverse(map[30]) * map[31], IsNearPose(walk.edges[30].candidates[0].a_from_b, 0.05, 1 * kDegree));
     EXPECT_GT(walk.worth(map), walk.worth(walk.chain()) + 50.0);
   }
 }
@@ -158,11 +158,11 @@ TEST(AssembledMap, IsBentToWhatItsHypothesesSay) {
 TEST(AssembledMap, NeverLaysPiecesOfDifferentLogsTogether) {
   Walk walk;
   constexpr std::size_t kLast = 24;
-  walk.links[kLast] = {};
+  walk.edges[kLast] = {};
   walk.turn_node(10);
   walk.turn_node(40);
-  std::vector<LoopHypothesis> joins = test::cluster_of(walk.truth, 0, kRingLap, 8, 0.0).members;
-  const std::vector<LoopHypothesis> more = test::cluster_of(walk.truth, kLast - 3, kLast + 1, 4, 0.0).members;
+  std::vector<LoopCandidate> joins = test::cluster_of(walk.truth, 0, kRingLap, 8, 0.0).members;
+  const std::vector<LoopCandidate> more = test::cluster_of(walk.truth, kLast - 3, kLast + 1, 4, 0.0).members;
   joins.insert(joins.end(), more.begin(), more.end());
   const std::vector<Pose2> map = walk.assembled(joins);
   EXPECT_THAT(inverse(map[kLast]) * map[kLast + 1], IsNearPose((Pose2{1e4, 0.0, 0.0}), 1e-6, 1e-9));
@@ -176,7 +176,7 @@ TEST(AssembledMap, OfAVariantIsTheSameToTheBitForAnyNumberOfThreads) {
   Walk walk;
   walk.turn_node(20);
   walk.turn_node(40);
-  const std::vector<LoopHypothesis> again = test::cluster_of(walk.truth, 0, kRingLap, 8, 0.0).members;
+  const std::vector<LoopCandidate> again = test::cluster_of(walk.truth, 0, kRingLap, 8, 0.0).members;
   for (int variant = 0; variant < 4; ++variant) {
     const std::vector<Pose2> map = walk.assembled(again, variant);
     for (const int threads : {1, 3}) {
@@ -232,11 +232,11 @@ TEST(AssembledMap, StoppedAtAnyTimeHasTheRestFromTheChain) {
     const std::vector<Pose2> map = walk.assembled({}, observer);
     ASSERT_EQ(map.size(), walk.truth.size());
     std::size_t changed = 0;
-    for (std::size_t i = 0; i < walk.links.size(); ++i) {
+    for (std::size_t i = 0; i < walk.edges.size(); ++i) {
       const Pose2 step = inverse(map[i]) * map[i + 1];
-      const Pose2 by_chain = walk.links[i].alternatives[0].a_from_b;
+      const Pose2 by_chain = walk.edges[i].candidates[0].a_from_b;
       if (testing::Value(step, IsNearPose(by_chain, 1e-6, 1e-6))) continue;
-      EXPECT_THAT(step, IsNearPose(walk.right[i].alternatives[0].a_from_b, 1e-6, 1e-6)) << i;
+      EXPECT_THAT(step, IsNearPose(walk.right[i].candidates[0].a_from_b, 1e-6, 1e-6)) << i;
       ++changed;
     }
     EXPECT_EQ(changed, times == 0 ? 0 : std::min<std::size_t>(times - 1, 6)) << "one more each time";
@@ -246,9 +246,9 @@ TEST(AssembledMap, StoppedAtAnyTimeHasTheRestFromTheChain) {
 
 TEST(AssembledMap, OfOneNodeOrNoneIsThat) {
   RunObserver nobody;
-  MapEvidence evidence(test::views_along(test::ring_world(1), test::ring_walk(1, 1)), {}, 1);
-  EXPECT_TRUE(assembled_map({}, {}, {}, evidence, 0, nobody).empty());
-  const std::vector<Pose2> one = assembled_map({}, {}, {{1.0, 2.0, 3.0}}, evidence, 1, nobody);
+  MapScore score(test::views_along(test::ring_world(1), test::ring_walk(1, 1)), {}, 1);
+  EXPECT_TRUE(merged_submaps({}, {}, {}, score, 0, nobody).empty());
+  const std::vector<Pose2> one = merged_submaps({}, {}, {{1.0, 2.0, 3.0}}, score, 1, nobody);
   ASSERT_EQ(one.size(), 1U);
   EXPECT_THAT(one[0], HasSameBits(Pose2{1.0, 2.0, 3.0}));
 }

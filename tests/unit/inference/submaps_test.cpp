@@ -18,15 +18,15 @@ Pose2 any_pose(std::mt19937& random) {
 }
 
 /// Nodes 2 and 3 are away from the rest.
-MapPieces away_and_back(std::mt19937& random) {
+Submaps away_and_back(std::mt19937& random) {
   std::vector<Pose2> poses;
   for (int n = 0; n < 6; ++n) poses.push_back(any_pose(random));
   return {poses, {0, 0, 2, 2, 0, 0}};
 }
 
-TEST(MapPieces, JoinsTheLaterPieceWhole) {
+TEST(Submaps, JoinsTheLaterPieceWhole) {
   std::mt19937 random(1);
-  MapPieces pieces = away_and_back(random);
+  Submaps pieces = away_and_back(random);
   const std::vector<Pose2> before = pieces.map_from_node();
   const Pose2 within = pieces.step(2);
   const Pose2 a_from_b = any_pose(random);
@@ -37,9 +37,9 @@ TEST(MapPieces, JoinsTheLaterPieceWhole) {
   EXPECT_THAT(pieces.map_from_node()[5], test::IsNearPose(before[5], 1e-9, 1e-9));
 }
 
-TEST(MapPieces, TellsWhichLinksJoinTheSameTwo) {
+TEST(Submaps, TellsWhichLinksJoinTheSameTwo) {
   std::mt19937 random(2);
-  MapPieces pieces = away_and_back(random);
+  Submaps pieces = away_and_back(random);
   EXPECT_TRUE(pieces.are_parallel(1, 3));
   EXPECT_TRUE(pieces.are_parallel(3, 1));
   EXPECT_FALSE(pieces.are_parallel(0, 4)) << "both are within a piece";
@@ -51,13 +51,13 @@ TEST(MapPieces, TellsWhichLinksJoinTheSameTwo) {
 }
 
 /// In either direction: by the way there, or by the way back, the pieces come to lie alike.
-TEST(MapPieces, CarriesWhatOneLinkSaysToTheOther) {
+TEST(Submaps, CarriesWhatOneLinkSaysToTheOther) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
-    const MapPieces apart = away_and_back(random);
+    const Submaps apart = away_and_back(random);
     const Pose2 a_from_b = any_pose(random);
     for (const auto& [link, parallel] : {std::pair<std::size_t, std::size_t>{1, 3}, {3, 1}}) {
-      MapPieces joined = apart;
+      Submaps joined = apart;
       joined.join(parallel, a_from_b);
       EXPECT_THAT(apart.carried_to(link, parallel, a_from_b), test::IsNearPose(joined.step(link), 1e-9, 1e-9));
     }

@@ -76,18 +76,18 @@ TEST(BadInput, CutGzipGivesWhatIsWholeAndAWarning) {
   const TempFolder folder;
   const std::string whole = test::read_file(folder.write_gz("whole.gz", carmen_lines(60)));
   const Log all = read_log(folder.path("whole.gz"));
-  ASSERT_EQ(all.positions.size(), 60U);
+  ASSERT_EQ(all.scans.size(), 60U);
   EXPECT_TRUE(all.warnings.empty());
 
   const Log cut = read_log(folder.write("cut.gz", whole.substr(0, whole.size() / 2)));
-  EXPECT_GT(cut.positions.size(), 10U);
-  EXPECT_LT(cut.positions.size(), 50U);
+  EXPECT_GT(cut.scans.size(), 10U);
+  EXPECT_LT(cut.scans.size(), 50U);
   EXPECT_THAT(
       cut.warnings,
       ElementsAre(AllOf(HasSubstr("cut.gz: the gzip data is cut off at byte " + std::to_string(whole.size() / 2)),
-                        HasSubstr("the " + std::to_string(cut.positions.size()) + " positions"))));
-  for (std::size_t i = 0; i < cut.positions.size(); ++i) {
-    EXPECT_EQ(cut.positions[i].sub_scans[0].ranges_m, all.positions[i].sub_scans[0].ranges_m);
+                        HasSubstr("the " + std::to_string(cut.scans.size()) + " positions"))));
+  for (std::size_t i = 0; i < cut.scans.size(); ++i) {
+    EXPECT_EQ(cut.scans[i].sweeps[0].ranges_m, all.scans[i].sweeps[0].ranges_m);
   }
 }
 
@@ -98,7 +98,7 @@ TEST(BadInput, GzipCutAnywhereNeverFailsOtherwise) {
     const std::string path = folder.write("cut.gz", whole.substr(0, length));
     try {
       const Log log = read_log(path);
-      EXPECT_FALSE(log.positions.empty());
+      EXPECT_FALSE(log.scans.empty());
       EXPECT_EQ(log.warnings.size(), 1U) << length;
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(), HasSubstr("cut.gz"));
@@ -111,7 +111,7 @@ TEST(BadInput, AWrongChecksumIsReported) {
   std::string content = test::read_file(folder.write_gz("a.gz", carmen_lines(60)));
   content[content.size() - 6] ^= 1;
   const Log log = read_log(folder.write("a.gz", content));
-  EXPECT_EQ(log.positions.size(), 60U);
+  EXPECT_EQ(log.scans.size(), 60U);
   EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("a.gz: the gzip data is damaged at byte")));
 }
 
@@ -152,7 +152,7 @@ TEST(BadInput, RandomEditsOfTextLogsNeverDoMoreThanAnInputError) {
     const std::string path = folder.write("a.log", content);
     for (const LogFormat format : {LogFormat::kAuto, LogFormat::kCarmen, LogFormat::kNist}) {
       try {
-        EXPECT_LE(read_log(path, format, options).positions.size(), 8U);
+        EXPECT_LE(read_log(path, format, options).scans.size(), 8U);
       } catch (const InputError& error) {
         EXPECT_THAT(error.what(), AllOf(HasSubstr("a.log"), Not(HasSubstr("\n"))));
       }
@@ -164,7 +164,7 @@ TEST(BadInput, JoinedGzipFilesAreOneLog) {
   const TempFolder folder;
   const std::string one = test::read_file(folder.write_gz("one.gz", carmen_lines(20)));
   const Log log = read_log(folder.write("two.gz", one + one));
-  EXPECT_EQ(log.positions.size(), 40U);
+  EXPECT_EQ(log.scans.size(), 40U);
   EXPECT_THAT(log.warnings, testing::ElementsAre(HasSubstr("1 times the clock goes back")));
 }
 

@@ -28,23 +28,23 @@ TEST(BareText, GeometryComesFromTheOptions) {
   const Log log = read_log(folder.write("a.txt", content), LogFormat::kAuto, four_sub_scans());
   EXPECT_EQ(log.format, "bare");
   EXPECT_TRUE(log.warnings.empty());
-  ASSERT_EQ(log.positions.size(), 2U);
-  EXPECT_EQ(log.positions[1].timestamp_s, 1.0);
-  ASSERT_EQ(log.positions[1].sub_scans.size(), 4U);
-  const SubScan& scan = log.positions[1].sub_scans[1];
+  ASSERT_EQ(log.scans.size(), 2U);
+  EXPECT_EQ(log.scans[1].timestamp_s, 1.0);
+  ASSERT_EQ(log.scans[1].sweeps.size(), 4U);
+  const Sweep& scan = log.scans[1].sweeps[1];
   EXPECT_FLOAT_EQ(scan.ranges_m[0], 1.05F);
   EXPECT_EQ(scan.ranges_m.size(), 5U);
   EXPECT_DOUBLE_EQ(scan.first_angle_rad, -50 * kDegree);
   EXPECT_DOUBLE_EQ(scan.angle_step_rad, 25 * kDegree);
   EXPECT_DOUBLE_EQ(scan.nominal_heading_rad, 90 * kDegree);
-  EXPECT_DOUBLE_EQ(log.positions[1].sub_scans[3].nominal_heading_rad, -90 * kDegree);
+  EXPECT_DOUBLE_EQ(log.scans[1].sweeps[3].nominal_heading_rad, -90 * kDegree);
   EXPECT_EQ(returns_in_robot(scan, {}).size(), 3U);
 }
 
 TEST(BareText, AnIncompleteLastPositionIsKeptWithAWarning) {
   const TempFolder folder;
   const Log log = read_log(folder.write("a.txt", "1 2\n1 2\n1 2\n1 2\n1 2\n"), LogFormat::kNist, four_sub_scans());
-  EXPECT_EQ(log.positions.size(), 2U);
+  EXPECT_EQ(log.scans.size(), 2U);
   EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("the last position has only 1 of 4 sub-scans")));
 }
 

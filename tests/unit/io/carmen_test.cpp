@@ -46,10 +46,10 @@ TEST_F(Carmen, FlaserAnglesFollowFromTheCount) {
   for (const auto& [count, step_deg] : conventions) {
     const Log log = read(flaser(count));
     ASSERT_EQ(log.format, "carmen");
-    ASSERT_EQ(log.positions.size(), 1U);
-    EXPECT_EQ(log.positions[0].timestamp_s, 12.25);
-    ASSERT_EQ(log.positions[0].sub_scans.size(), 1U);
-    const SubScan& scan = log.positions[0].sub_scans[0];
+    ASSERT_EQ(log.scans.size(), 1U);
+    EXPECT_EQ(log.scans[0].timestamp_s, 12.25);
+    ASSERT_EQ(log.scans[0].sweeps.size(), 1U);
+    const Sweep& scan = log.scans[0].sweeps[0];
     EXPECT_EQ(scan.ranges_m.size(), static_cast<std::size_t>(count));
     EXPECT_DOUBLE_EQ(scan.first_angle_rad, -90 * kDegree);
     EXPECT_DOUBLE_EQ(scan.angle_step_rad, step_deg * kDegree);
@@ -61,16 +61,16 @@ TEST_F(Carmen, OtherCountsNeedAFieldOfView) {
   EXPECT_THAT(error("PARAM x 1\n" + flaser(100)), testing::AllOf(HasSubstr("a.log:2:"), HasSubstr("--fov-deg")));
   LogReadOptions options;
   options.fov_rad = 198 * kDegree;
-  const SubScan scan = read(flaser(100), options).positions[0].sub_scans[0];
+  const Sweep scan = read(flaser(100), options).scans[0].sweeps[0];
   EXPECT_DOUBLE_EQ(scan.first_angle_rad, -99 * kDegree);
   EXPECT_DOUBLE_EQ(scan.angle_step_rad, 2 * kDegree);
-  EXPECT_DOUBLE_EQ(read(flaser(181), options).positions[0].sub_scans[0].angle_step_rad, 1.1 * kDegree);
+  EXPECT_DOUBLE_EQ(read(flaser(181), options).scans[0].sweeps[0].angle_step_rad, 1.1 * kDegree);
 }
 
 TEST_F(Carmen, RobotLaserHasItsOwnAnglesAndLimits) {
   const Log log = read("ROBOTLASER1 0 -1.0 2.0 0.5 7.5 0.1 0 5 1 2 3 7.5 8 2 10 20 l l l r r r 0 0 0 0 0 33.5 h 1\n");
-  EXPECT_EQ(log.positions.at(0).timestamp_s, 33.5);
-  const SubScan& scan = log.positions[0].sub_scans.at(0);
+  EXPECT_EQ(log.scans.at(0).timestamp_s, 33.5);
+  const Sweep& scan = log.scans[0].sweeps.at(0);
   EXPECT_EQ(scan.first_angle_rad, -1.0);
   EXPECT_EQ(scan.angle_step_rad, 0.5);
   EXPECT_EQ(scan.max_range_m, 7.5);
@@ -80,24 +80,24 @@ TEST_F(Carmen, RobotLaserHasItsOwnAnglesAndLimits) {
 
 TEST_F(Carmen, PosesAreNotEvenNumbers) {
   const Log log = read("FLASER " + readings(180) + " nan x ?? 1e999 -- # 7.5 host 1\n");
-  EXPECT_EQ(log.positions.at(0).timestamp_s, 7.5);
+  EXPECT_EQ(log.scans.at(0).timestamp_s, 7.5);
 }
 
 TEST_F(Carmen, OtherKeywordsAreIgnored) {
   const Log log = read("# remark\nODOM garbage\nRLASER 5 junk\nSYNC\n\n" + flaser(180) + "TRUEPOS x\n");
-  EXPECT_EQ(log.positions.size(), 1U);
+  EXPECT_EQ(log.scans.size(), 1U);
   EXPECT_TRUE(log.warnings.empty());
 }
 
 TEST_F(Carmen, OneLaserIsUsedAndTheOthersAreNamed) {
   const std::string robot_laser = "ROBOTLASER1 0 -1 2 1 8 0 0 3 1 2 3 0 0 0 0 0 0 0 0 0 0 0 0 5 h 1\n";
   const Log first = read(flaser(180) + robot_laser);
-  EXPECT_EQ(first.positions.size(), 1U);
+  EXPECT_EQ(first.scans.size(), 1U);
   EXPECT_THAT(first.warnings, ElementsAre(HasSubstr("'ROBOTLASER1' (1 scans)")));
   LogReadOptions options;
   options.sensor_label = "ROBOTLASER1";
   const Log second = read(flaser(180) + robot_laser, options);
-  EXPECT_EQ(second.positions.at(0).timestamp_s, 5.0);
+  EXPECT_EQ(second.scans.at(0).timestamp_s, 5.0);
   EXPECT_TRUE(second.warnings.empty());
   options.sensor_label = "none";
   EXPECT_THAT(error(flaser(180), options), testing::AllOf(HasSubstr("'none'"), HasSubstr("'FLASER'")));
@@ -107,7 +107,7 @@ TEST_F(Carmen, ReadingsThatAreNoDistancesAreNoReturns) {
   LogReadOptions options;
   options.fov_rad = 1.0;
   const Log log = read("FLASER 6 nan inf -1 0 2 -inf 0 0 0 0 0 0 1 h 1\n", options);
-  const SubScan& scan = log.positions.at(0).sub_scans.at(0);
+  const Sweep& scan = log.scans.at(0).sweeps.at(0);
   EXPECT_EQ(returns_in_robot(scan, {}).size(), 1U);
   for (const std::size_t beam : {0U, 1U}) EXPECT_TRUE(std::isnan(scan.ranges_m[beam])) << beam;
   for (const std::size_t beam : {2U, 3U, 5U}) EXPECT_EQ(scan.ranges_m[beam], 0.0F) << "says nothing: " << beam;
@@ -115,13 +115,13 @@ TEST_F(Carmen, ReadingsThatAreNoDistancesAreNoReturns) {
 
 TEST_F(Carmen, ALineWithoutReadingsIsAnEmptyScan) {
   const Log log = read(flaser(180) + "FLASER 0 0 0 0 0 0 0 9 h 9\n");
-  ASSERT_EQ(log.positions.size(), 2U);
-  EXPECT_TRUE(log.positions[1].sub_scans.at(0).ranges_m.empty());
+  ASSERT_EQ(log.scans.size(), 2U);
+  EXPECT_TRUE(log.scans[1].sweeps.at(0).ranges_m.empty());
 }
 
 TEST_F(Carmen, SickErrorCodesAreNoReturns) {
-  const SubScan scan =
-      read("FLASER 180 81.91 80.5" + times(178, "1.5") + " 0 0 0 0 0 0 1 h 1\n").positions.at(0).sub_scans.at(0);
+  const Sweep scan =
+      read("FLASER 180 81.91 80.5" + times(178, "1.5") + " 0 0 0 0 0 0 1 h 1\n").scans.at(0).sweeps.at(0);
   EXPECT_FLOAT_EQ(static_cast<float>(scan.max_range_m), 81.91F);
   EXPECT_EQ(returns_in_robot(scan, {}).size(), 179U);
 }
@@ -129,14 +129,14 @@ TEST_F(Carmen, SickErrorCodesAreNoReturns) {
 TEST_F(Carmen, SickCodesInMillimetresAreNoReturns) {
   const Log log =
       read("FLASER 180" + times(160, "3.21") + times(10, "32.763") + times(10, "32.767") + " 0 0 0 0 0 0 1 h 1\n");
-  EXPECT_FLOAT_EQ(static_cast<float>(log.positions.at(0).sub_scans.at(0).max_range_m), 32.763F);
-  EXPECT_EQ(returns_in_robot(log.positions[0].sub_scans[0], {}).size(), 160U);
+  EXPECT_FLOAT_EQ(static_cast<float>(log.scans.at(0).sweeps.at(0).max_range_m), 32.763F);
+  EXPECT_EQ(returns_in_robot(log.scans[0].sweeps[0], {}).size(), 160U);
 }
 
 TEST_F(Carmen, AParameterLimitsTheRange) {
   const Log log = read("PARAM robot_front_laser_max 10.0 host 1\n" + flaser(180, "10.5"));
-  EXPECT_EQ(log.positions.at(0).sub_scans.at(0).max_range_m, 10.0);
-  EXPECT_TRUE(returns_in_robot(log.positions[0].sub_scans[0], {}).empty());
+  EXPECT_EQ(log.scans.at(0).sweeps.at(0).max_range_m, 10.0);
+  EXPECT_TRUE(returns_in_robot(log.scans[0].sweeps[0], {}).empty());
 }
 
 TEST_F(Carmen, ShortLinesAreNamed) {
@@ -160,7 +160,7 @@ TEST_F(Carmen, DosLineEndsAndALastLineWithoutEnd) {
   std::string content = flaser(180) + flaser(180, "2.5", "13");
   content.insert(content.size() - 1, "\r");
   content.pop_back();
-  EXPECT_EQ(read(content).positions.size(), 2U);
+  EXPECT_EQ(read(content).scans.size(), 2U);
 }
 
 }  // namespace

@@ -21,34 +21,34 @@ Log awkward_log() {
   Log log;
   log.format = "nist";
   for (int i = 0; i < 3; ++i) {
-    Position position;
+    Scan position;
     position.timestamp_s = 1137834225.7133856 + 0.125 * i;
     for (int turn = 0; turn < 4; ++turn) {
-      SubScan scan = make_scan(101, -50 * kDegree, kDegree);
+      Sweep scan = make_scan(101, -50 * kDegree, kDegree);
       scan.nominal_heading_rad = wrap_angle(turn * 90 * kDegree);
       scan.robot_from_sensor = {0.1, -0.05, 0.3, 0.2, 0.0, 0.0};
-      position.sub_scans.push_back(scan);
+      position.sweeps.push_back(scan);
     }
-    position.sub_scans[1].sensor_label = "second laser #2";
-    position.sub_scans[1].first_angle_rad = -10 * kDegree;
-    position.sub_scans[1].min_range_m = 1.105;
-    position.sub_scans[2].angle_step_rad = -0.7 * kDegree;
-    position.sub_scans[2].first_angle_rad = 80 * kDegree;
-    position.sub_scans[2].robot_from_sensor.roll_rad = kPi;
-    position.sub_scans[3].robot_from_sensor.pitch_rad = 10 * kDegree;
-    position.sub_scans[3].robot_from_sensor.roll_rad = -5 * kDegree;
-    position.sub_scans[3].max_range_m = 0.0;
-    log.positions.push_back(position);
+    position.sweeps[1].sensor_label = "second laser #2";
+    position.sweeps[1].first_angle_rad = -10 * kDegree;
+    position.sweeps[1].min_range_m = 1.105;
+    position.sweeps[2].angle_step_rad = -0.7 * kDegree;
+    position.sweeps[2].first_angle_rad = 80 * kDegree;
+    position.sweeps[2].robot_from_sensor.roll_rad = kPi;
+    position.sweeps[3].robot_from_sensor.pitch_rad = 10 * kDegree;
+    position.sweeps[3].robot_from_sensor.roll_rad = -5 * kDegree;
+    position.sweeps[3].max_range_m = 0.0;
+    log.scans.push_back(position);
   }
   return log;
 }
 
 Log flaser_log() {
   Log log;
-  Position position;
+  Scan position;
   position.timestamp_s = 12.5;
-  position.sub_scans.push_back(make_scan(181, -90 * kDegree, kDegree));
-  log.positions.push_back(position);
+  position.sweeps.push_back(make_scan(181, -90 * kDegree, kDegree));
+  log.scans.push_back(position);
   return log;
 }
 
@@ -76,8 +76,8 @@ TEST(Convert, ATimeThatARawlogCannotHoldIsRefused) {
   const TempFolder folder;
   for (const double timestamp_s : {1e300, -1e300, 1e12, -2e10, std::nan("")}) {
     Log log = flaser_log();
-    log.positions.push_back(log.positions.front());
-    log.positions.back().timestamp_s = timestamp_s;
+    log.scans.push_back(log.scans.front());
+    log.scans.back().timestamp_s = timestamp_s;
     try {
       write_log(log, folder.path("a.rawlog"), LogFormat::kRawlog);
       ADD_FAILURE() << timestamp_s;
@@ -92,7 +92,7 @@ TEST(Convert, WhatIsNotKeptIsSaid) {
   Log log = awkward_log();
   EXPECT_EQ(what_is_lost(log, LogFormat::kNist), "");
   EXPECT_THAT(what_is_lost(log, LogFormat::kCarmen), HasSubstr("nominal headings"));
-  log.positions[0].reference_pose = Pose2{};
+  log.scans[0].reference_pose = Pose2{};
   EXPECT_THAT(what_is_lost(log, LogFormat::kRawlog), HasSubstr(", reference poses are left out"));
   EXPECT_EQ(what_is_lost(flaser_log(), LogFormat::kCarmen), "");
 }
@@ -102,12 +102,12 @@ TEST(Convert, TextFormatsKeepEveryBit) {
   const Log log = awkward_log();
   write_log(log, folder.path("a.nist"), LogFormat::kNist);
   const Log back = read_log(folder.path("a.nist"));
-  for (std::size_t i = 0; i < log.positions.size(); ++i) {
-    EXPECT_EQ(back.positions[i].timestamp_s, log.positions[i].timestamp_s);
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    EXPECT_EQ(back.scans[i].timestamp_s, log.scans[i].timestamp_s);
     for (std::size_t s = 0; s < 4; ++s) {
-      const SubScan& expected = log.positions[i].sub_scans[s];
+      const Sweep& expected = log.scans[i].sweeps[s];
       for (std::size_t beam = 0; beam < expected.ranges_m.size(); ++beam) {
-        const float read = back.positions[i].sub_scans[s].ranges_m[beam];
+        const float read = back.scans[i].sweeps[s].ranges_m[beam];
         EXPECT_TRUE(read == expected.ranges_m[beam] || (beam == 1 && std::isnan(read))) << beam;
       }
     }
@@ -117,9 +117,9 @@ TEST(Convert, TextFormatsKeepEveryBit) {
 TEST(Convert, ReferencePosesSurviveInTheTextFormat) {
   const TempFolder folder;
   Log log = flaser_log();
-  log.positions[0].reference_pose = Pose2{1.5, -2.25, 0.5};
+  log.scans[0].reference_pose = Pose2{1.5, -2.25, 0.5};
   write_log(log, folder.path("a.nist"), LogFormat::kNist);
-  const Pose2 back = read_log(folder.path("a.nist")).positions.at(0).reference_pose.value();
+  const Pose2 back = read_log(folder.path("a.nist")).scans.at(0).reference_pose.value();
   EXPECT_EQ(back.x_m, 1.5);
   EXPECT_EQ(back.y_m, -2.25);
   EXPECT_NEAR(back.theta_rad, 0.5, 1e-15);
@@ -139,7 +139,7 @@ TEST(Convert, WhatFlaserCanSayIsFlaser) {
 TEST(Convert, RobotLaserCarriesBothPoses) {
   const TempFolder folder;
   Log log = flaser_log();
-  log.positions[0].sub_scans[0].robot_from_sensor.x_m = 0.5;
+  log.scans[0].sweeps[0].robot_from_sensor.x_m = 0.5;
   const LogPoses poses{{{1.0, 2.0, 90 * kDegree}}};
   write_log(log, folder.path("a.log"), LogFormat::kCarmen, &poses);
   const std::string content = test::read_file(folder.path("a.log"));
@@ -188,18 +188,18 @@ TEST(Summarise, CountsWhatTheLogHolds) {
   Log log = awkward_log();
   const LogSummary summary = summarise(log);
   EXPECT_EQ(summary.format, "nist");
-  EXPECT_EQ(summary.num_positions, 3U);
+  EXPECT_EQ(summary.num_scans, 3U);
   EXPECT_DOUBLE_EQ(summary.duration_s, 0.25);
   ASSERT_EQ(summary.sensors.size(), 2U);
   EXPECT_EQ(summary.sensors[0].label, "laser");
-  EXPECT_EQ(summary.sensors[0].num_sub_scans, 9U);
+  EXPECT_EQ(summary.sensors[0].num_sweeps, 9U);
   EXPECT_EQ(summary.sensors[0].most_beams, 101U);
   EXPECT_NEAR(summary.sensors[0].fov_rad, 100 * kDegree, 1e-12);
   EXPECT_EQ(summary.sensors[0].max_range_m, 20.0);
   EXPECT_EQ(summary.sensors[0].shortest_return_m, 1.0);
   EXPECT_EQ(summary.sensors[0].longest_return_m, 20.0);  // the last sub-scan has no maximum
   EXPECT_DOUBLE_EQ(summary.sensors[0].return_ratio, (99.0 + 99.0 + 100.0) / 303.0);
-  EXPECT_EQ(summarise(Log{}).num_positions, 0U);
+  EXPECT_EQ(summarise(Log{}).num_scans, 0U);
 }
 
 }  // namespace

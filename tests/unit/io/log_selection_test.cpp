@@ -10,10 +10,10 @@ namespace {
 
 std::vector<double> selected(int first, int skip, int every) {
   Log log;
-  for (int i = 0; i < 10; ++i) log.positions.push_back({static_cast<double>(i), {}, {}, {}});
+  for (int i = 0; i < 10; ++i) log.scans.push_back({static_cast<double>(i), {}, {}, {}});
   SelectionOptions options{first, skip, every};
   std::vector<double> left;
-  for (const Position& position : select_positions(log, options).positions) left.push_back(position.timestamp_s);
+  for (const Scan& position : select_positions(log, options).scans) left.push_back(position.timestamp_s);
   for (std::size_t i = 0; i < left.size(); ++i) {
     EXPECT_EQ(static_cast<double>(index_in_whole_log(i, options)), left[i]);
   }

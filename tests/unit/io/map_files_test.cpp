@@ -24,19 +24,19 @@ class MapFiles : public testing::Test {
 /// A robot at (2, 1) that faces north and sees a wall 3 m ahead, 1 m to its right, and nothing to its left.
 struct World {
   Log log;
-  std::vector<PlacedPosition> placed;
+  std::vector<PlacedScan> placed;
   Point2 wall_ahead_m{2.0, 4.0};
   Point2 wall_right_m{3.0, 1.0};
 
   World() {
-    SubScan sub_scan;
-    sub_scan.ranges_m = {1.0F, 3.0F, NAN};
-    sub_scan.first_angle_rad = -kPi / 2;
-    sub_scan.angle_step_rad = kPi / 2;
-    log.positions.push_back({12.5, {sub_scan}, std::nullopt, std::nullopt});
+    Sweep sweep;
+    sweep.ranges_m = {1.0F, 3.0F, NAN};
+    sweep.first_angle_rad = -kPi / 2;
+    sweep.angle_step_rad = kPi / 2;
+    log.scans.push_back({12.5, {sweep}, std::nullopt, std::nullopt});
     placed.push_back({0, 12.5, {2.0, 1.0, kPi / 2}, {Pose2{}}});
   }
-  GridMap map() const { return build_grid_map(log, placed, ReturnOptions{}, GridMapOptions{0.07}); }
+  OccupancyGrid map() const { return build_occupancy_grid(log, placed, ReturnOptions{}, OccupancyGridOptions{0.07}); }
 };
 
 /// Numbers of a map.yaml in the way of ROS map_server.
@@ -59,7 +59,7 @@ struct RosMap {
 
 TEST_F(MapFiles, RosFindsTheWallsWhereTheyStand) {
   const World world;
-  const GridMap map = world.map();
+  const OccupancyGrid map = world.map();
   const RosMap ros(ros_map_yaml(map, "map.png"));
   for (const char* name : {"map.png", "map.pgm", "map.tif", "map.PNG"}) {
     write_map_image(map, in_folder(name), nullptr);
@@ -76,7 +76,7 @@ TEST_F(MapFiles, RosFindsTheWallsWhereTheyStand) {
 }
 
 TEST_F(MapFiles, YamlSaysHowGreysAreMeant) {
-  GridMap map;
+  OccupancyGrid map;
   map.resolution_m = 0.05;
   map.origin_m = {-12.35, 0.1 + 0.2};
   EXPECT_EQ(ros_map_yaml(map, "a \"b\".png"),
@@ -86,7 +86,7 @@ TEST_F(MapFiles, YamlSaysHowGreysAreMeant) {
 
 TEST_F(MapFiles, APathIsDrawnInColourOrInGrey) {
   const World world;
-  const GridMap map = world.map();
+  const OccupancyGrid map = world.map();
   const Eigen::Vector2i robot = map.pixel_at(world.placed[0].map_from_robot.translation());
   write_map_image(map, in_folder("map.png"), &world.placed);
   const cv::Mat colour = cv::imread(in_folder("map.png"), cv::IMREAD_UNCHANGED);
@@ -109,7 +109,7 @@ TEST_F(MapFiles, APathIsDrawnInColourOrInGrey) {
 
 TEST_F(MapFiles, TheScaleBarHidesNothing) {
   const World world;
-  const GridMap map = world.map();
+  const OccupancyGrid map = world.map();
   write_map_image(map, in_folder("map.pgm"), &world.placed);
   const cv::Mat image = cv::imread(in_folder("map.pgm"), cv::IMREAD_UNCHANGED);
   const int strip = image.rows - map.height_cells;
@@ -127,7 +127,7 @@ TEST_F(MapFiles, TheScaleBarHidesNothing) {
 }
 
 TEST_F(MapFiles, AnotherEndingIsRefusedAndNothingIsLeft) {
-  const GridMap map = World().map();
+  const OccupancyGrid map = World().map();
   for (const char* name : {"map.jpg", "map", "map.png.gz", ".png/map"}) {
     EXPECT_THROW(write_map_image(map, in_folder(name), nullptr), OutputError) << name;
   }
@@ -136,7 +136,7 @@ TEST_F(MapFiles, AnotherEndingIsRefusedAndNothingIsLeft) {
 }
 
 TEST(TumTrajectory, HasOneLinePerPositionWithAUnitQuaternion) {
-  const std::vector<PlacedPosition> placed{{0, 1234567890.123456, {1.5, -2.25, kPi / 2}, {}}, {3, 2.0, {}, {}}};
+  const std::vector<PlacedScan> placed{{0, 1234567890.123456, {1.5, -2.25, kPi / 2}, {}}, {3, 2.0, {}, {}}};
   std::istringstream lines(tum_trajectory(placed));
   double t, x, y, z, qx, qy, qz, qw;
   ASSERT_TRUE(lines >> t >> x >> y >> z >> qx >> qy >> qz >> qw);

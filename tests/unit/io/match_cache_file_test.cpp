@@ -22,19 +22,19 @@ using ::testing::IsEmpty;
 
 constexpr std::size_t kRecordBytes = 8 + 24 + 208;  // of one hypothesis
 
-Log log_of(std::size_t num_positions) {
+Log log_of(std::size_t num_scans) {
   Log log;
-  for (std::size_t i = 0; i < num_positions; ++i) {
+  for (std::size_t i = 0; i < num_scans; ++i) {
     test::Scanner scanner;
     scanner.num_beams = 20;
-    log.positions.push_back(test::scan_of(test::uneven_room(), {0.1 * static_cast<double>(i), 0.0, 0.0}, scanner));
+    log.scans.push_back(test::scan_of(test::uneven_room(), {0.1 * static_cast<double>(i), 0.0, 0.0}, scanner));
   }
   return log;
 }
 
 /// Numbers that text would not keep, and all different.
-PoseHypothesis hypothesis(double seed) {
-  PoseHypothesis h;
+MatchCandidate candidate(double seed) {
+  MatchCandidate h;
   h.ref_from_query = {seed / 3.0, -0.0, std::nextafter(seed, 10.0)};
   h.score = -seed * 1e-300;
   h.visibility = {seed + 0.1, seed + 0.2, seed + 0.3, seed + 0.4, seed + 0.5, seed + 0.6, seed + 0.7};
@@ -46,7 +46,7 @@ PoseHypothesis hypothesis(double seed) {
   return h;
 }
 
-std::vector<double> numbers(const PoseHypothesis& h) {
+std::vector<double> numbers(const MatchCandidate& h) {
   std::vector<double> all{h.ref_from_query.x_m,
                           h.ref_from_query.y_m,
                           h.ref_from_query.theta_rad,
@@ -76,12 +76,12 @@ MATCHER_P(HasSameBitsAs, expected, "") {
 
 class AlignmentStoreFileTest : public ::testing::Test {
  protected:
-  AlignmentStoreFile opened(StateOpening opening) const { return {path_, opening, log_, options_}; }
+  MatchCacheFile opened(StateOpening opening) const { return {path_, opening, log_, options_}; }
 
   /// A file with the alignments of position 0 to 1, 2 and 3.
   void make_three() const {
-    AlignmentStoreFile state = opened(StateOpening::kCreate);
-    for (std::size_t i = 1; i <= 3; ++i) state.keep({0, i}, {hypothesis(static_cast<double>(i))});
+    MatchCacheFile state = opened(StateOpening::kCreate);
+    for (std::size_t i = 1; i <= 3; ++i) state.keep({0, i}, {candidate(static_cast<double>(i))});
   }
 
   std::string why_not_resumed() const {
@@ -103,15 +103,15 @@ class AlignmentStoreFileTest : public ::testing::Test {
 };
 
 TEST_F(AlignmentStoreFileTest, GivesBackEveryBitInTheSameRunAndInTheNext) {
-  const std::vector<PoseHypothesis> kept{hypothesis(1.5), hypothesis(2.5)};
+  const std::vector<MatchCandidate> kept{candidate(1.5), candidate(2.5)};
   {
-    AlignmentStoreFile state = opened(StateOpening::kCreate);
+    MatchCacheFile state = opened(StateOpening::kCreate);
     EXPECT_FALSE(state.find({0, 1}));
     state.keep({0, 1}, kept);
     ASSERT_TRUE(state.find({0, 1}));
     EXPECT_EQ(state.num_resumed(), 0U);
   }
-  AlignmentStoreFile state = opened(StateOpening::kResume);
+  MatchCacheFile state = opened(StateOpening::kResume);
   EXPECT_EQ(state.num_resumed(), 1U);
   EXPECT_THAT(state.warning(), IsEmpty());
   const auto found = state.find({0, 1});
@@ -122,10 +122,10 @@ TEST_F(AlignmentStoreFileTest, GivesBackEveryBitInTheSameRunAndInTheNext) {
 }
 
 TEST_F(AlignmentStoreFileTest, TellsDirectionsAndSearchesApart) {
-  AlignmentStoreFile state = opened(StateOpening::kCreate);
+  MatchCacheFile state = opened(StateOpening::kCreate);
   state.keep({1, 2, SearchKind::kFull}, {});
   EXPECT_TRUE(state.find({1, 2, SearchKind::kFull}));
-  EXPECT_FALSE(state.find({1, 2, SearchKind::kBorrowed}));
+  EXPECT_FALSE(state.find({1, 2, SearchKind::kMultiReference}));
   EXPECT_FALSE(state.find({1, 2, SearchKind::kLoop}));
   EXPECT_FALSE(state.find({2, 1, SearchKind::kFull}));
 }
@@ -138,31 +138,31 @@ TEST_F(AlignmentStoreFileTest, KnowsThatNothingWasFound) {
 }
 
 TEST_F(AlignmentStoreFileTest, KeepsEachAlignmentOnce) {
-  AlignmentStoreFile state = opened(StateOpening::kCreate);
-  state.keep({0, 1}, {hypothesis(1)});
+  MatchCacheFile state = opened(StateOpening::kCreate);
+  state.keep({0, 1}, {candidate(1)});
   const auto size = std::filesystem::file_size(path_);
-  state.keep({0, 1}, {hypothesis(1)});
+  state.keep({0, 1}, {candidate(1)});
   EXPECT_EQ(std::filesystem::file_size(path_), size);
 }
 
 TEST_F(AlignmentStoreFileTest, WritesAtOnce) {
-  AlignmentStoreFile state = opened(StateOpening::kCreate);
+  MatchCacheFile state = opened(StateOpening::kCreate);
   const auto size = std::filesystem::file_size(path_);
-  state.keep({0, 1}, {hypothesis(1)});
+  state.keep({0, 1}, {candidate(1)});
   EXPECT_EQ(std::filesystem::file_size(path_), size + kRecordBytes);
 }
 
 TEST_F(AlignmentStoreFileTest, TakesManyThreads) {
   log_ = log_of(400);
-  const auto of = [](std::size_t i) { return hypothesis(1.0 + 0.01 * static_cast<double>(i)); };
+  const auto of = [](std::size_t i) { return candidate(1.0 + 0.01 * static_cast<double>(i)); };
   {
-    AlignmentStoreFile state = opened(StateOpening::kCreate);
+    MatchCacheFile state = opened(StateOpening::kCreate);
     parallel_for(400, 4, [&](std::size_t i) {
       state.keep({i, 399 - i}, {of(i)});
       if (!state.find({i, 399 - i})) throw std::runtime_error("lost");
     });
   }
-  AlignmentStoreFile state = opened(StateOpening::kResume);
+  MatchCacheFile state = opened(StateOpening::kResume);
   EXPECT_EQ(state.num_resumed(), 400U);
   for (std::size_t i = 0; i < 400; ++i) {
     EXPECT_THAT(state.find({i, 399 - i})->front(), HasSameBitsAs(of(i)));
@@ -177,11 +177,11 @@ TEST_F(AlignmentStoreFileTest, CutAnywhereKeepsWhatIsWholeAndGoesOn) {
     folder_.write("run.state", whole.substr(0, size));
     const std::size_t num_whole = size < header ? 0 : (size - header) / kRecordBytes;
     {
-      AlignmentStoreFile state = opened(StateOpening::kResume);
+      MatchCacheFile state = opened(StateOpening::kResume);
       ASSERT_EQ(state.num_resumed(), num_whole) << size;
       const bool at_border = size >= header && (size - header) % kRecordBytes == 0;
       ASSERT_EQ(state.warning().empty(), at_border) << size;
-      for (std::size_t i = 1; i <= 3; ++i) state.keep({0, i}, {hypothesis(static_cast<double>(i))});
+      for (std::size_t i = 1; i <= 3; ++i) state.keep({0, i}, {candidate(static_cast<double>(i))});
     }
     ASSERT_EQ(test::read_file(path_), whole) << size;
   }
@@ -195,7 +195,7 @@ TEST_F(AlignmentStoreFileTest, AFlippedBitAnywhereCostsWhatComesAfterIt) {
     std::string damaged = whole;
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << (at % 8)));
     folder_.write("run.state", damaged);
-    const AlignmentStoreFile state = opened(StateOpening::kResume);
+    const MatchCacheFile state = opened(StateOpening::kResume);
     ASSERT_EQ(state.num_resumed(), (at - header) / kRecordBytes) << at;
     ASSERT_THAT(state.warning(), AllOf(HasSubstr(path_), HasSubstr("damaged"))) << at;
   }
@@ -215,7 +215,7 @@ TEST_F(AlignmentStoreFileTest, AFlippedBitInTheHeaderIsAnError) {
 TEST_F(AlignmentStoreFileTest, ATailOfZerosIsCutOff) {
   make_three();
   folder_.write("run.state", test::read_file(path_) + std::string(4096, '\0'));
-  const AlignmentStoreFile state = opened(StateOpening::kResume);
+  const MatchCacheFile state = opened(StateOpening::kResume);
   EXPECT_EQ(state.num_resumed(), 3U);
   EXPECT_THAT(state.warning(), HasSubstr("the 3 alignments before it are used"));
 }
@@ -223,13 +223,13 @@ TEST_F(AlignmentStoreFileTest, ATailOfZerosIsCutOff) {
 TEST_F(AlignmentStoreFileTest, NamesWhatDiffers) {
   make_three();
   const Log log = log_;
-  log_.positions.pop_back();
+  log_.scans.pop_back();
   EXPECT_THAT(why_not_resumed(), AllOf(HasSubstr("another log"), HasSubstr("of 5, not 4")));
   log_ = log;
-  log_.positions[2].sub_scans[0].ranges_m[7] += 0.001F;
+  log_.scans[2].sweeps[0].ranges_m[7] += 0.001F;
   EXPECT_THAT(why_not_resumed(), AllOf(HasSubstr("another log"), HasSubstr("just as many")));
   log_ = log;
-  log_.positions[2].sub_scans[0].robot_from_sensor.yaw_rad = 0.1;
+  log_.scans[2].sweeps[0].robot_from_sensor.yaw_rad = 0.1;
   EXPECT_THAT(why_not_resumed(), HasSubstr("another log"));
   log_ = log;
   options_.robust.matcher.search.visibility.agree_tangent_rad = 30 * kDegree;
@@ -245,7 +245,7 @@ TEST_F(AlignmentStoreFileTest, AskedForWithOtherOptionsThatDoNotMatterIsTheSame)
   options_.robust.loops.close_loops = false;
   options_.robust.keyframes.step_m = 0.1;
   options_.robust.matcher.confidence.sure_probability = 0.5;
-  log_.positions[0].timestamp_s = 77.0;
+  log_.scans[0].timestamp_s = 77.0;
   EXPECT_EQ(opened(StateOpening::kResume).num_resumed(), 3U);
 }
 
@@ -276,7 +276,7 @@ TEST_F(AlignmentStoreFileTest, IsReplacedOnlyWhenAskedFor) {
 }
 
 TEST_F(AlignmentStoreFileTest, BelongsToOneRunAtATime) {
-  const AlignmentStoreFile first = opened(StateOpening::kCreate);
+  const MatchCacheFile first = opened(StateOpening::kCreate);
   EXPECT_THROW(opened(StateOpening::kResume), OutputError);
   EXPECT_THROW(opened(StateOpening::kReplace), OutputError);
 }

@@ -33,22 +33,22 @@ int num_mutations() {
 }
 
 /// Through a room, with few beams.
-Log walk(int num_positions = 3, double step_m = 0.2) {
+Log walk(int num_scans = 3, double step_m = 0.2) {
   Log log;
   test::Scanner scanner;
   scanner.num_beams = 60;
   scanner.view_rad = kPi;
-  for (int i = 0; i < num_positions; ++i) {
-    log.positions.push_back(test::scan_of(test::uneven_room(), {step_m * i, 0.05 * i, 0.05 * i}, scanner));
-    log.positions.back().timestamp_s = 100.0 + i;
-    SubScan& scan = log.positions.back().sub_scans.front();
+  for (int i = 0; i < num_scans; ++i) {
+    log.scans.push_back(test::scan_of(test::uneven_room(), {step_m * i, 0.05 * i, 0.05 * i}, scanner));
+    log.scans.back().timestamp_s = 100.0 + i;
+    Sweep& scan = log.scans.back().sweeps.front();
     scan.sensor_label = "laser";
     scan.robot_from_sensor = {0.1, -0.1, 0.3, 0.02, 0.01, -0.01};
   }
   return log;
 }
 
-std::string readings(const SubScan& scan) {
+std::string readings(const Sweep& scan) {
   std::string text;
   for (const float range_m : scan.ranges_m) text += " " + std::to_string(range_m);
   return text;
@@ -58,8 +58,8 @@ std::string readings(const SubScan& scan) {
 std::string flaser_lines() {
   Log log = walk();
   std::string text = "PARAM robot_front_laser_max 20.0 host 0\n";
-  for (Position& position : log.positions) {
-    SubScan scan = position.sub_scans.front();
+  for (Scan& position : log.scans) {
+    Sweep scan = position.sweeps.front();
     std::vector<float> ranges_m;
     for (const float range_m : scan.ranges_m) ranges_m.insert(ranges_m.end(), 3, range_m);
     scan.ranges_m = ranges_m;
@@ -73,9 +73,9 @@ std::string flaser_lines() {
 Log rolling_walk() {
   constexpr double kPeriod_s = 0.1;
   Log log = walk(5, 0.05);
-  for (std::size_t i = 0; i < log.positions.size(); ++i) {
-    log.positions[i].timestamp_s = 100.0 + kPeriod_s * static_cast<double>(i);
-    SubScan& scan = log.positions[i].sub_scans.front();
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    log.scans[i].timestamp_s = 100.0 + kPeriod_s * static_cast<double>(i);
+    Sweep& scan = log.scans[i].sweeps.front();
     scan.beam_time_step_s = kPeriod_s / 120;
     scan.start_s = 0.01;
     if (i != 2) continue;
@@ -96,7 +96,7 @@ struct Sample {
 std::vector<Sample> samples(const TempFolder& folder) {
   const Log log = walk();
   std::vector<Sample> all{{"flaser", flaser_lines()}, {"bare", ""}};
-  for (const Position& position : log.positions) all.back().content += readings(position.sub_scans.front()) + "\n";
+  for (const Scan& position : log.scans) all.back().content += readings(position.sweeps.front()) + "\n";
   for (const auto& [name, format] :
        {std::pair{"nist", LogFormat::kNist}, std::pair{"robotlaser", LogFormat::kCarmen}}) {
     write_log(log, folder.path(name), format);
@@ -256,7 +256,7 @@ class MutatedStates : public testing::Test {
   MutatedStates() { options_.run.threads = 1; }
 
   void map_with(StateOpening opening, std::size_t& num_resumed) {
-    AlignmentStoreFile state(path_, opening, log_, options_);
+    MatchCacheFile state(path_, opening, log_, options_);
     num_resumed = state.num_resumed();
     RunObserver observer;
     map_log(log_, options_, observer, nullptr, &state);

@@ -32,8 +32,8 @@ TEST_F(NistScan, AScanHasItsOwnBeamsAnglesAndLimits) {
       "position 1\nscan l heading 0 first_angle -45 angle_step 45 max_range inf min_range nan ranges 1 2\n"
       "position 2\nscan l heading 0 ranges\n"
       "position 3\nscan l heading 0 max_range 0 ranges 4 5 6 7\n");
-  ASSERT_EQ(log.positions.size(), 4U);
-  const auto scan = [&](std::size_t i) { return log.positions[i].sub_scans.at(0); };
+  ASSERT_EQ(log.scans.size(), 4U);
+  const auto scan = [&](std::size_t i) { return log.scans[i].sweeps.at(0); };
   EXPECT_EQ(scan(0).ranges_m.size(), 3U);
   EXPECT_EQ(scan(0).max_range_m, 10.0);
   EXPECT_DOUBLE_EQ(scan(1).first_angle_rad, -45 * kDegree);
@@ -50,12 +50,12 @@ TEST_F(NistScan, BeamsHaveAnglesTimesAndIntensitiesOfTheirOwn) {
       "units m rad\nsensor l beams 3 angle_step 0.1 time_step 0.001\n"
       "position 7\nscan l heading 0 time 0.25 angles 0.5 0.1 0.3 ranges 1 2 3 intensities 10 20 nan\n"
       "position 8\nscan l heading 0 times 0.1 0.2 0.4 ranges 1 - 3\n");
-  const SubScan& uneven = log.positions.at(0).sub_scans.at(0);
+  const Sweep& uneven = log.scans.at(0).sweeps.at(0);
   EXPECT_FALSE(uneven.is_evenly_spaced());
   EXPECT_THAT(uneven.beam_angles_rad, ElementsAre(0.5, 0.1, 0.3));
   EXPECT_DOUBLE_EQ(uneven.beam_time_s(2), 0.252);
   EXPECT_THAT(uneven.intensities, ElementsAre(10.0F, 20.0F, testing::NanSensitiveFloatEq(std::nanf(""))));
-  const SubScan& even = log.positions.at(1).sub_scans.at(0);
+  const Sweep& even = log.scans.at(1).sweeps.at(0);
   EXPECT_TRUE(even.is_evenly_spaced());
   EXPECT_FLOAT_EQ(static_cast<float>(even.beam_time_s(2)), 0.4F);
 }
@@ -65,9 +65,9 @@ TEST_F(NistScan, HeadersThatContradictThemselvesAreMendedAndCounted) {
       "sensor l beams 3 first_angle -90 angle_step 1e9 last_angle 90\nposition 0\nscan l heading 0 ranges 1 2 3\n"
       "position 1\nscan l heading 0 angle_step -90 ranges 1 2 3\n"
       "position 2\nscan l heading 0 angle_step 10 ranges 1 2 3\n");
-  EXPECT_DOUBLE_EQ(log.positions[0].sub_scans[0].angle_step_rad, 90 * kDegree);
-  EXPECT_DOUBLE_EQ(log.positions[1].sub_scans[0].angle_step_rad, 90 * kDegree);
-  EXPECT_DOUBLE_EQ(log.positions[2].sub_scans[0].angle_step_rad, 10 * kDegree);
+  EXPECT_DOUBLE_EQ(log.scans[0].sweeps[0].angle_step_rad, 90 * kDegree);
+  EXPECT_DOUBLE_EQ(log.scans[1].sweeps[0].angle_step_rad, 90 * kDegree);
+  EXPECT_DOUBLE_EQ(log.scans[2].sweeps[0].angle_step_rad, 10 * kDegree);
   EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("1 scans have an angle_step and a last_angle that contradict"),
                                         HasSubstr("2 scans have an angle_step that cannot be")));
 }
@@ -77,11 +77,11 @@ TEST_F(NistScan, WithImpossibleAnglesOfItsOwnIsLeftWithoutReadings) {
       "sensor l beams any angle_step 1\nposition 0\nscan l heading 0 ranges 1 2\n"
       "position 1\nscan l heading 0 angle_step 0 last_angle nan ranges 1 2 intensities 1 2\n"
       "position 2\nscan l heading 0 first_angle nan ranges 1 2\n");
-  ASSERT_EQ(log.positions.size(), 3U);
-  EXPECT_EQ(log.positions[0].sub_scans[0].ranges_m.size(), 2U);
-  EXPECT_THAT(log.positions[1].sub_scans[0].ranges_m, IsEmpty());
-  EXPECT_THAT(log.positions[1].sub_scans[0].intensities, IsEmpty());
-  EXPECT_THAT(log.positions[2].sub_scans[0].ranges_m, IsEmpty());
+  ASSERT_EQ(log.scans.size(), 3U);
+  EXPECT_EQ(log.scans[0].sweeps[0].ranges_m.size(), 2U);
+  EXPECT_THAT(log.scans[1].sweeps[0].ranges_m, IsEmpty());
+  EXPECT_THAT(log.scans[1].sweeps[0].intensities, IsEmpty());
+  EXPECT_THAT(log.scans[2].sweeps[0].ranges_m, IsEmpty());
   EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("2 scans have angles that cannot be")));
 }
 
@@ -102,25 +102,25 @@ TEST_F(NistScan, FaultsAreNamedWithTheirLine) {
 TEST_F(NistScan, WhatIsWrittenReadsBackToTheSameBits) {
   Log log;
   for (int i = 0; i < 3; ++i) {
-    Position position;
+    Scan position;
     position.timestamp_s = i;
-    SubScan scan = test::make_scan(static_cast<std::size_t>(5 + i), -0.1 - 0.01 * i, 0.013);
+    Sweep scan = test::make_scan(static_cast<std::size_t>(5 + i), -0.1 - 0.01 * i, 0.013);
     scan.beam_time_step_s = 1.0 / 7 / 360;
     scan.start_s = 0.1 / 3 * i;
     scan.nominal_heading_rad = 0.1 * i;
     if (i == 1) set_beam_angles(scan, {0.1, 0.2 / 3, 0.3, 0.4, 0.5, 1.0 / 7});
     if (i == 2) scan.intensities.assign(scan.ranges_m.size(), 0.1F);
     if (i == 2) scan.beam_times_s.assign(scan.ranges_m.size(), 0.3F);
-    position.sub_scans.push_back(std::move(scan));
-    log.positions.push_back(std::move(position));
+    position.sweeps.push_back(std::move(scan));
+    log.scans.push_back(std::move(position));
   }
   write_log(log, folder_.path("b.nist"), LogFormat::kNist);
   const Log back = read_log(folder_.path("b.nist"));
   EXPECT_THAT(back.warnings, IsEmpty());
-  for (std::size_t i = 0; i < log.positions.size(); ++i) {
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
     SCOPED_TRACE(i);
-    const SubScan& expected = log.positions[i].sub_scans[0];
-    const SubScan& read = back.positions.at(i).sub_scans.at(0);
+    const Sweep& expected = log.scans[i].sweeps[0];
+    const Sweep& read = back.scans.at(i).sweeps.at(0);
     EXPECT_EQ(read.beam_angles_rad, expected.beam_angles_rad);
     EXPECT_EQ(read.beam_times_s, expected.beam_times_s);
     EXPECT_EQ(read.intensities, expected.intensities);
@@ -135,12 +135,12 @@ TEST_F(NistScan, WhatIsWrittenReadsBackToTheSameBits) {
 
 TEST_F(NistScan, TheFirstVersionIsWrittenWhereItSuffices) {
   Log log;
-  log.positions.emplace_back();
-  log.positions[0].sub_scans.push_back(test::make_scan(5, 0.0, 0.1));
+  log.scans.emplace_back();
+  log.scans[0].sweeps.push_back(test::make_scan(5, 0.0, 0.1));
   write_log(log, folder_.path("a.nist"), LogFormat::kNist);
   EXPECT_THAT(test::read_file(folder_.path("a.nist")), HasSubstr("shapemap-scans 1\nunits m deg\n"));
   for (const LogFormat format : {LogFormat::kCarmen, LogFormat::kRawlog}) EXPECT_EQ(what_is_lost(log, format), "");
-  SubScan& scan = log.positions[0].sub_scans[0];
+  Sweep& scan = log.scans[0].sweeps[0];
   set_beam_angles(scan, {0.0, 0.1, 0.2, 0.31, 0.4});
   scan.intensities.assign(5, 1.0F);
   scan.start_s = 1.0;

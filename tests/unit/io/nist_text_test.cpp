@@ -35,12 +35,12 @@ TEST_F(NistText, SaysAllThereIsToSay) {
       "scan l heading -90 ranges 110 nan 310\r\nposition 2\r\nscan l heading 0 ranges 1 2 3\r\n");
   EXPECT_EQ(log.format, "nist");
   EXPECT_TRUE(log.warnings.empty());
-  ASSERT_EQ(log.positions.size(), 2U);
-  const Position& position = log.positions[0];
+  ASSERT_EQ(log.scans.size(), 2U);
+  const Scan& position = log.scans[0];
   EXPECT_EQ(position.timestamp_s, 1.5);
   EXPECT_EQ(position.reference_pose, std::optional<Pose2>({1.0, -2.0, 90 * kDegree}));
-  ASSERT_EQ(position.sub_scans.size(), 2U);
-  const SubScan& scan = position.sub_scans[1];
+  ASSERT_EQ(position.sweeps.size(), 2U);
+  const Sweep& scan = position.sweeps[1];
   EXPECT_FLOAT_EQ(scan.ranges_m[0], 1.1F);
   EXPECT_TRUE(std::isnan(scan.ranges_m[1]));
   EXPECT_DOUBLE_EQ(scan.nominal_heading_rad, -90 * kDegree);
@@ -53,16 +53,16 @@ TEST_F(NistText, SaysAllThereIsToSay) {
   EXPECT_DOUBLE_EQ(scan.robot_from_sensor.yaw_rad, 90 * kDegree);
   EXPECT_DOUBLE_EQ(scan.robot_from_sensor.pitch_rad, 5 * kDegree);
   EXPECT_DOUBLE_EQ(scan.robot_from_sensor.roll_rad, kPi);
-  EXPECT_FALSE(log.positions[1].reference_pose.has_value());
+  EXPECT_FALSE(log.scans[1].reference_pose.has_value());
 }
 
 TEST_F(NistText, UnitsAreMetresAndDegreesUnlessSaid) {
   const std::string rest = "sensor l beams 2 first_angle 1 angle_step 0.5\nposition 0\nscan l heading 0 ranges 3 4\n";
-  const SubScan scan = read("shapemap-scans 1\n" + rest).positions.at(0).sub_scans.at(0);
+  const Sweep scan = read("shapemap-scans 1\n" + rest).scans.at(0).sweeps.at(0);
   EXPECT_EQ(scan.ranges_m[0], 3.0F);
   EXPECT_DOUBLE_EQ(scan.first_angle_rad, kDegree);
   EXPECT_EQ(scan.max_range_m, 0.0);
-  const SubScan in_mm = read("shapemap-scans 1\nunits mm rad\n" + rest).positions.at(0).sub_scans.at(0);
+  const Sweep in_mm = read("shapemap-scans 1\nunits mm rad\n" + rest).scans.at(0).sweeps.at(0);
   EXPECT_FLOAT_EQ(in_mm.ranges_m[0], 0.003F);
   EXPECT_EQ(in_mm.first_angle_rad, 1.0);
 }
@@ -71,10 +71,10 @@ TEST_F(NistText, OneSensorCanBePicked) {
   const std::string content =
       "shapemap-scans 1\nsensor a beams 2 angle_step 1\nsensor b beams 2 angle_step 1\n"
       "position 0\nscan a heading 0 ranges 1 2\nscan b heading 0 ranges 3 4\n";
-  EXPECT_EQ(read(content).positions.at(0).sub_scans.size(), 2U);
+  EXPECT_EQ(read(content).scans.at(0).sweeps.size(), 2U);
   LogReadOptions options;
   options.sensor_label = "b";
-  EXPECT_THAT(read(content, options).positions.at(0).sub_scans.at(0).ranges_m, ElementsAre(3.0F, 4.0F));
+  EXPECT_THAT(read(content, options).scans.at(0).sweeps.at(0).ranges_m, ElementsAre(3.0F, 4.0F));
   options.sensor_label = "c";
   EXPECT_THAT(error(content, options), HasSubstr("no scans of a laser called 'c'; the log has 'a' (1 scans), 'b'"));
 }

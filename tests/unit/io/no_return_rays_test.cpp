@@ -16,44 +16,44 @@ using test::PlacedLog;
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
 /// Three beams: right, ahead, left.
-Position three_beams(float right_m, float ahead_m, float left_m, double max_range_m = 8.0) {
-  SubScan sub_scan;
-  sub_scan.ranges_m = {right_m, ahead_m, left_m};
-  sub_scan.first_angle_rad = -kPi / 2;
-  sub_scan.angle_step_rad = kPi / 2;
-  sub_scan.max_range_m = max_range_m;
-  Position position;
-  position.sub_scans.push_back(sub_scan);
+Scan three_beams(float right_m, float ahead_m, float left_m, double max_range_m = 8.0) {
+  Sweep sweep;
+  sweep.ranges_m = {right_m, ahead_m, left_m};
+  sweep.first_angle_rad = -kPi / 2;
+  sweep.angle_step_rad = kPi / 2;
+  sweep.max_range_m = max_range_m;
+  Scan position;
+  position.sweeps.push_back(sweep);
   return position;
 }
 
-GridMap drawn(const PlacedLog& walk, double clear_no_return_m) {
-  GridMapOptions options;
+OccupancyGrid drawn(const PlacedLog& walk, double clear_no_return_m) {
+  OccupancyGridOptions options;
   options.resolution_m = 0.1;
   options.clear_no_return_m = clear_no_return_m;
-  return build_grid_map(walk.log, walk.placed, {}, options);
+  return build_occupancy_grid(walk.log, walk.placed, {}, options);
 }
 
-PlacedLog one_scan(const Position& position) {
+PlacedLog one_scan(const Scan& position) {
   PlacedLog walk;
   walk.add(position, {0.05, 0.05, 0.0});
   return walk;
 }
 
-bool is_inside(const GridMap& map, double x_m, double y_m) {
+bool is_inside(const OccupancyGrid& map, double x_m, double y_m) {
   const Eigen::Vector2i pixel = map.pixel_at({x_m, y_m});
   return 0 <= pixel.x() && pixel.x() < map.width_cells && 0 <= pixel.y() && pixel.y() < map.height_cells;
 }
 
-int grey_at(const GridMap& map, double x_m, double y_m) {
+int grey_at(const OccupancyGrid& map, double x_m, double y_m) {
   const Eigen::Vector2i pixel = map.pixel_at({x_m, y_m});
   return map.grey.at(static_cast<std::size_t>(pixel.y() * map.width_cells + pixel.x()));
 }
 
-bool is_free(const GridMap& map, double x_m, double y_m) {
+bool is_free(const OccupancyGrid& map, double x_m, double y_m) {
   return is_inside(map, x_m, y_m) && grey_at(map, x_m, y_m) > 129;
 }
-bool is_occupied(const GridMap& map, double x_m, double y_m) { return grey_at(map, x_m, y_m) < 126; }
+bool is_occupied(const OccupancyGrid& map, double x_m, double y_m) { return grey_at(map, x_m, y_m) < 126; }
 
 TEST(NoReturnRays, AreNotDrawnUnlessAskedFor) {
   const PlacedLog walk = one_scan(three_beams(1.0F, kNothing, 1.0F));
@@ -63,10 +63,10 @@ TEST(NoReturnRays, AreNotDrawnUnlessAskedFor) {
 
 TEST(NoReturnRays, ClearAsFarAsAskedForAndTheLaserSees) {
   const PlacedLog walk = one_scan(three_beams(1.0F, kNothing, 1.0F));
-  const GridMap three = drawn(walk, 3.0);
+  const OccupancyGrid three = drawn(walk, 3.0);
   EXPECT_TRUE(is_free(three, 2.95, 0.05));
   EXPECT_FALSE(is_free(three, 3.15, 0.05));
-  const GridMap all = drawn(walk, 500.0);
+  const OccupancyGrid all = drawn(walk, 500.0);
   EXPECT_TRUE(is_free(all, 7.95, 0.05));
   EXPECT_FALSE(is_free(all, 8.15, 0.05));
   EXPECT_EQ(all.height_cells, drawn(walk, 0.0).height_cells);
@@ -77,20 +77,20 @@ TEST(NoReturnRays, AreThoseThatHitNothingNotThoseThatSayNothing) {
   for (const float nothing : {kNothing, std::numeric_limits<float>::infinity(), 8.0F, 9.5F}) {
     EXPECT_TRUE(is_free(drawn(one_scan(three_beams(1.0F, nothing, 1.0F)), 3.0), 1.05, 0.05)) << nothing;
   }
-  Position too_near = three_beams(1.0F, 0.05F, 1.0F);
-  too_near.sub_scans[0].min_range_m = 0.1;
+  Scan too_near = three_beams(1.0F, 0.05F, 1.0F);
+  too_near.sweeps[0].min_range_m = 0.1;
   EXPECT_FALSE(is_free(drawn(one_scan(too_near), 3.0), 1.05, 0.05));
   for (const float odd : {0.0F, -1.0F, -std::numeric_limits<float>::infinity()}) {
     EXPECT_FALSE(is_free(drawn(one_scan(three_beams(1.0F, odd, 1.0F)), 3.0), 1.05, 0.05)) << odd;
   }
-  const Position no_maximum = three_beams(1.0F, 5000.0F, 1.0F, 0.0);
+  const Scan no_maximum = three_beams(1.0F, 5000.0F, 1.0F, 0.0);
   EXPECT_FALSE(is_free(drawn(one_scan(no_maximum), 3.0), 1.05, 0.05)) << "damage";
 }
 
 TEST(NoReturnRays, StopAtWhatIsKnownToBeAWall) {
   PlacedLog walk = one_scan(three_beams(1.0F, 2.0F, 1.0F));
   walk.add(three_beams(1.0F, kNothing, 1.0F), {0.05, 0.05, 0.0});
-  const GridMap map = drawn(walk, 5.0);
+  const OccupancyGrid map = drawn(walk, 5.0);
   EXPECT_TRUE(is_occupied(map, 2.05, 0.05));
   EXPECT_FALSE(is_free(map, 2.55, 0.05)) << "behind the wall";
   EXPECT_EQ(map.grey, drawn(walk, 0.0).grey) << "all that it crosses is known already";
@@ -100,7 +100,7 @@ TEST(NoReturnRays, DoNotSlipThroughACornerOfAWall) {
   PlacedLog walk;
   // Hits in the cells (1, 0) and (0, 1), and a beam through the corner that they share, to the cells (1, 1) and on.
   walk.add(three_beams(kNothing, 0.1F, 0.1F), {0.05, 0.05, 0.0});
-  walk.log.positions[0].sub_scans[0].ranges_m[0] = 1.0F;
+  walk.log.scans[0].sweeps[0].ranges_m[0] = 1.0F;
   walk.add(three_beams(1.0F, kNothing, 1.0F), {0.05, 0.05, 45 * kDegree});
   EXPECT_FALSE(is_free(drawn(walk, 3.0), 0.55, 0.55));
 }
@@ -109,7 +109,7 @@ TEST(NoReturnRays, OfScansThatContradictTheMapAreNotDrawn) {
   PlacedLog walk = one_scan(three_beams(1.0F, 2.0F, 1.0F));
   walk.add(three_beams(1.0F, kNothing, 1.0F), {0.05, 0.05, kPi});
   EXPECT_TRUE(is_free(drawn(walk, 3.0), -1.05, 0.05));
-  walk.placed[1].agreement.contradicts_map = true;
+  walk.placed[1].consistency.contradicts_map = true;
   EXPECT_FALSE(is_free(drawn(walk, 3.0), -1.05, 0.05));
 }
 
@@ -123,11 +123,11 @@ TEST(NoReturnRays, MakeThePictureNoLargerThanWhatTheyClear) {
 
 TEST(NoReturnRays, OfALaserThatIsTiltedTooMuchAreNone) {
   PlacedLog walk = one_scan(three_beams(1.0F, 2.0F, 1.0F));
-  walk.log.positions[0].sub_scans.push_back(three_beams(kNothing, kNothing, kNothing).sub_scans[0]);
-  walk.log.positions[0].sub_scans[1].nominal_heading_rad = kPi;
-  walk.placed[0].robot_from_sub_scan.emplace_back();
+  walk.log.scans[0].sweeps.push_back(three_beams(kNothing, kNothing, kNothing).sweeps[0]);
+  walk.log.scans[0].sweeps[1].nominal_heading_rad = kPi;
+  walk.placed[0].robot_from_sweep.emplace_back();
   EXPECT_TRUE(is_free(drawn(walk, 3.0), -1.05, 0.05));
-  walk.log.positions[0].sub_scans[1].robot_from_sensor.pitch_rad = 60 * kDegree;
+  walk.log.scans[0].sweeps[1].robot_from_sensor.pitch_rad = 60 * kDegree;
   EXPECT_FALSE(is_free(drawn(walk, 3.0), -1.05, 0.05));
 }
 

@@ -33,10 +33,10 @@ class RawlogDamage : public testing::Test {
     Log log;
     LogPoses poses;
     for (int i = 0; i < kNumPositions; ++i) {
-      Position position;
+      Scan position;
       position.timestamp_s = 100.0 + i;
-      position.sub_scans = {make_scan(50, -1.0, 0.02), make_scan(50, 0.5, 0.02)};
-      log.positions.push_back(position);
+      position.sweeps = {make_scan(50, -1.0, 0.02), make_scan(50, 0.5, 0.02)};
+      log.scans.push_back(position);
       poses.map_from_robot.push_back({0.1 * i, 0.0, 0.0});
     }
     write_log(log, folder_.path("whole.rawlog"), LogFormat::kRawlog, &poses);
@@ -59,7 +59,7 @@ class RawlogDamage : public testing::Test {
 
 TEST_F(RawlogDamage, UncompressedIsReadAsWell) {
   const Log log = read_log(folder_.write("plain.rawlog", content_));
-  EXPECT_EQ(log.positions.size(), 4U);
+  EXPECT_EQ(log.scans.size(), 4U);
   EXPECT_TRUE(log.warnings.empty());
 }
 
@@ -69,9 +69,9 @@ TEST_F(RawlogDamage, CutAnywhereGivesWhatIsWhole) {
     const std::string path = folder_.write("cut.rawlog", content_.substr(0, length));
     try {
       const Log log = read_log(path);
-      ASSERT_GE(log.positions.size(), most);
-      most = log.positions.size();
-      for (const Position& position : log.positions) ASSERT_EQ(position.sub_scans.size(), 2U);
+      ASSERT_GE(log.scans.size(), most);
+      most = log.scans.size();
+      for (const Scan& position : log.scans) ASSERT_EQ(position.sweeps.size(), 2U);
       // A cut just between two entries, or behind an end mark, cannot be seen.
       if (!log.warnings.empty()) {
         EXPECT_THAT(log.warnings, ElementsAre(AllOf(HasSubstr("whole entries"), HasSubstr("offset"))));
@@ -85,15 +85,15 @@ TEST_F(RawlogDamage, CutAnywhereGivesWhatIsWhole) {
 
 TEST_F(RawlogDamage, CutInsideAScanIsReported) {
   const Log log = read_log(folder_.write("cut.rawlog", content_.substr(0, content_.size() - 100)));
-  EXPECT_EQ(log.positions.size(), 3U);
+  EXPECT_EQ(log.scans.size(), 3U);
   EXPECT_THAT(log.warnings, ElementsAre(AllOf(HasSubstr("after 7 whole entries"), HasSubstr("offset"))));
 }
 
 TEST_F(RawlogDamage, CutGzipIsReported) {
   const std::string compressed = test::read_file(folder_.path("whole.rawlog"));
   const Log log = read_log(folder_.write("cut.rawlog", compressed.substr(0, compressed.size() - 60)));
-  EXPECT_GE(log.positions.size(), 1U);
-  EXPECT_LT(log.positions.size(), 4U);
+  EXPECT_GE(log.scans.size(), 1U);
+  EXPECT_LT(log.scans.size(), 4U);
   EXPECT_THAT(log.warnings, ElementsAre(AllOf(HasSubstr("whole entries"), HasSubstr("the gzip data is cut off"))));
   EXPECT_THAT(input_error(folder_.write("cut.rawlog", compressed.substr(0, 40))), HasSubstr("cut.rawlog"));
 }
@@ -123,7 +123,7 @@ TEST_F(RawlogDamage, RandomBitsNeverDoMoreThanAnInputError) {
       content[where(rng)] ^= static_cast<char>(1U << (rng() % 8U));
     }
     try {
-      EXPECT_LE(read_log(folder_.write("a.rawlog", content)).positions.size(), 8U);
+      EXPECT_LE(read_log(folder_.write("a.rawlog", content)).scans.size(), 8U);
     } catch (const InputError&) {
     }
   }

@@ -64,25 +64,25 @@ TEST_F(Rawlog, ScansOfAFrameAreSubScansOfOnePosition) {
                        frame({comment, mrpt_scan("a", 7.0), comment}));
   EXPECT_EQ(log.format, "rawlog");
   EXPECT_TRUE(log.warnings.empty());
-  ASSERT_EQ(log.positions.size(), 2U);
-  EXPECT_EQ(log.positions[0].timestamp_s, 5.5);
-  ASSERT_EQ(log.positions[0].sub_scans.size(), 2U);
-  EXPECT_EQ(log.positions[0].sub_scans[1].sensor_label, "b");
-  EXPECT_EQ(log.positions[1].timestamp_s, 7.0);
+  ASSERT_EQ(log.scans.size(), 2U);
+  EXPECT_EQ(log.scans[0].timestamp_s, 5.5);
+  ASSERT_EQ(log.scans[0].sweeps.size(), 2U);
+  EXPECT_EQ(log.scans[0].sweeps[1].sensor_label, "b");
+  EXPECT_EQ(log.scans[1].timestamp_s, 7.0);
 }
 
 TEST_F(Rawlog, LoneObservationsAreOnePositionEachOfTheFirstLaser) {
   mrpt::obs::CObservationOdometry odometry;
   const Log log = read(odometry, *mrpt_scan("front", 1.0), odometry, *mrpt_scan("rear", 1.5), *mrpt_scan("front", 2.0));
-  ASSERT_EQ(log.positions.size(), 2U);
-  EXPECT_EQ(log.positions[1].timestamp_s, 2.0);
+  ASSERT_EQ(log.scans.size(), 2U);
+  EXPECT_EQ(log.scans[1].timestamp_s, 2.0);
   EXPECT_THAT(log.warnings, ElementsAre(testing::AllOf(HasSubstr("'front'"), HasSubstr("'rear' (1 scans)"))));
 }
 
 TEST_F(Rawlog, ALaserCanBePicked) {
   options_.sensor_label = "rear";
-  EXPECT_EQ(read(*mrpt_scan("front", 1.0), *mrpt_scan("rear", 1.5)).positions.at(0).timestamp_s, 1.5);
-  EXPECT_EQ(read(frame({mrpt_scan("front", 1.0), mrpt_scan("rear", 1.5)})).positions.at(0).sub_scans.size(), 1U);
+  EXPECT_EQ(read(*mrpt_scan("front", 1.0), *mrpt_scan("rear", 1.5)).scans.at(0).timestamp_s, 1.5);
+  EXPECT_EQ(read(frame({mrpt_scan("front", 1.0), mrpt_scan("rear", 1.5)})).scans.at(0).sweeps.size(), 1U);
   options_.sensor_label = "top";
   EXPECT_THROW(read(*mrpt_scan("front", 1.0)), InputError);
 }
@@ -91,7 +91,7 @@ TEST_F(Rawlog, AnglesMountFlagsAndLimitsAreKept) {
   auto scan = mrpt_scan("a", 1.0);
   scan->rightToLeft = false;
   scan->sensorPose.setFromValues(0.1, 0.2, 0.3, 0.5, 0.25, 3.0);
-  const SubScan out = read(frame({scan})).positions.at(0).sub_scans.at(0);
+  const Sweep out = read(frame({scan})).scans.at(0).sweeps.at(0);
   EXPECT_DOUBLE_EQ(out.first_angle_rad, 1.0);
   EXPECT_DOUBLE_EQ(out.angle_step_rad, -0.5);
   EXPECT_EQ(out.max_range_m, 10.0);
@@ -111,7 +111,7 @@ TEST_F(Rawlog, AScanWithoutTimeTakesItsIndex) {
   auto scan = mrpt_scan("a", 1.0);
   scan->timestamp = INVALID_TIMESTAMP;
   const Log log = read(*scan, *scan);
-  EXPECT_EQ(log.positions.at(1).timestamp_s, 1.0);
+  EXPECT_EQ(log.scans.at(1).timestamp_s, 1.0);
   EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("2 positions have no timestamp")));
 }
 
@@ -119,7 +119,7 @@ TEST_F(Rawlog, AScanWithoutBeamsIsLeftOut) {
   auto scan = mrpt_scan("a", 1.0);
   scan->resizeScan(0);
   const Log log = read(*scan, *mrpt_scan("a", 2.0));
-  EXPECT_EQ(log.positions.size(), 1U);
+  EXPECT_EQ(log.scans.size(), 1U);
   EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("1 scan is left out: no beams (the first at offset ")));
 }
 

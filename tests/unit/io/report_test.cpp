@@ -15,26 +15,26 @@ using Json = nlohmann::json;
 class Report : public testing::Test {
  protected:
   Report() {
-    for (const double timestamp_s : {10.0, 11.0, 12.5}) log_.positions.push_back({timestamp_s, {SubScan{}}, {}, {}});
+    for (const double timestamp_s : {10.0, 11.0, 12.5}) log_.scans.push_back({timestamp_s, {Sweep{}}, {}, {}});
     log_.format = "carmen";
-    result_.fragments.resize(2);
-    result_.fragments[0].positions = {{0, 10.0, {}, {Pose2{}}}, {1, 11.0, {1.0, 2.0, kPi / 2}, {Pose2{}}}};
-    result_.fragments[1].positions = {{2, 12.5, {}, {Pose2{}}}};
-    result_.largest_fragment = 0;
-    result_.positions.resize(3);
-    for (std::size_t i = 0; i < 3; ++i) result_.positions[i].position_index = i;
-    result_.positions[0].fragment = 0;
-    result_.positions[0].starts_fragment = true;
-    result_.positions[1].fragment = 0;
-    result_.positions[1].alignment.status = AlignStatus::kOk;
-    result_.positions[1].alignment.ref_from_query = {1.0, 2.0, kPi / 2};
-    result_.positions[1].alignment.overlap = 77;
-    result_.positions[1].alignment.query_from_sub_scan = {Pose2{0.01, 0.0, 0.0}};
-    result_.positions[2].fragment = 1;
-    result_.positions[2].starts_fragment = true;
-    result_.positions[2].reason = "only 3 of 10";
-    result_.positions[2].alignment.status = AlignStatus::kTooFewCorrespondences;
-    result_.positions[2].alignment.ref_from_query = {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0};
+    result_.components.resize(2);
+    result_.components[0].scans = {{0, 10.0, {}, {Pose2{}}}, {1, 11.0, {1.0, 2.0, kPi / 2}, {Pose2{}}}};
+    result_.components[1].scans = {{2, 12.5, {}, {Pose2{}}}};
+    result_.largest_component = 0;
+    result_.scans.resize(3);
+    for (std::size_t i = 0; i < 3; ++i) result_.scans[i].scan_index = i;
+    result_.scans[0].component = 0;
+    result_.scans[0].starts_component = true;
+    result_.scans[1].component = 0;
+    result_.scans[1].alignment.status = MatchStatus::kOk;
+    result_.scans[1].alignment.ref_from_query = {1.0, 2.0, kPi / 2};
+    result_.scans[1].alignment.overlap = 77;
+    result_.scans[1].alignment.query_from_sweep = {Pose2{0.01, 0.0, 0.0}};
+    result_.scans[2].component = 1;
+    result_.scans[2].starts_component = true;
+    result_.scans[2].reason = "only 3 of 10";
+    result_.scans[2].alignment.status = MatchStatus::kTooFewCorrespondences;
+    result_.scans[2].alignment.ref_from_query = {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0};
     selection_.skip = 5;
     selection_.every = 2;
   }
@@ -59,7 +59,7 @@ class Report : public testing::Test {
   MappingOptions mapping_;
   LogReadOptions reading_;
   SelectionOptions selection_;
-  GridMapOptions grid_;
+  OccupancyGridOptions grid_;
   std::vector<WallDirection> walls_;
 };
 
@@ -106,8 +106,8 @@ TEST_F(Report, OfThePapersMethodHasNoProbability) {
 }
 
 TEST_F(Report, TellsHowSureAPoseIsAndWhatElseItMightBe) {
-  Alignment& alignment = result_.positions[1].alignment;
-  for (const AlignStatus status : {AlignStatus::kOk, AlignStatus::kAmbiguous, AlignStatus::kDegenerate}) {
+  ScanMatch& alignment = result_.scans[1].alignment;
+  for (const MatchStatus status : {MatchStatus::kOk, MatchStatus::kAmbiguous, MatchStatus::kDegenerate}) {
     alignment.status = status;
     alignment.probability = 0.75;
     alignment.covariance << 1.0, 2.0, 3.0, 2.0, 5.0, 6.0, 3.0, 6.0, 9.0;
@@ -127,19 +127,19 @@ TEST_F(Report, TellsHowSureAPoseIsAndWhatElseItMightBe) {
 }
 
 TEST_F(Report, ShowsNoPoseWhereNoneIsTrusted) {
-  Alignment& alignment = result_.positions[1].alignment;
-  alignment.status = AlignStatus::kTooLittleOverlap;
+  ScanMatch& alignment = result_.scans[1].alignment;
+  alignment.status = MatchStatus::kTooLittleOverlap;
   EXPECT_TRUE(parsed()["positions"][1]["alignment"]["ref_from_query"].is_null());
 }
 
 TEST_F(Report, ListsFragmentsAndWhichOneIsTheMap) {
-  const Json fragments = parsed()["fragments"];
-  ASSERT_EQ(fragments.size(), 2U);
-  EXPECT_EQ(fragments[0]["num_positions"], 2);
-  EXPECT_EQ(fragments[0]["last_index"], 1);
-  EXPECT_EQ(fragments[0]["is_map"], true);
-  EXPECT_EQ(fragments[1]["first_index"], 2);
-  EXPECT_EQ(fragments[1]["is_map"], false);
+  const Json components = parsed()["fragments"];
+  ASSERT_EQ(components.size(), 2U);
+  EXPECT_EQ(components[0]["num_positions"], 2);
+  EXPECT_EQ(components[0]["last_index"], 1);
+  EXPECT_EQ(components[0]["is_map"], true);
+  EXPECT_EQ(components[1]["first_index"], 2);
+  EXPECT_EQ(components[1]["is_map"], false);
 }
 
 TEST_F(Report, TellsWhichLogEachPositionIsFrom) {
@@ -166,7 +166,7 @@ TEST_F(Report, TellsWhichLogEachPositionIsFrom) {
 
 TEST_F(Report, TellsLoopsAndWhatTheyHold) {
   result_.loops.push_back({0, 1, {1.0, 2.0, kPi / 2}, 12.5});
-  result_.positions[1].held_by_loops = true;
+  result_.scans[1].loop_constrained = true;
   result_.times.loops_s = 0.25;
   const Json report = parsed();
   ASSERT_EQ(report["loops"].size(), 1U);
@@ -181,11 +181,11 @@ TEST_F(Report, TellsLoopsAndWhatTheyHold) {
 }
 
 TEST_F(Report, TellsHowEachScanGoesWithTheRest) {
-  result_.fragments[0].positions[1].agreement = {0.5, 0.25, 0.125, true};
-  result_.fragments[1].positions[0].agreement = {0.0, 0.0, 1.0, true};
-  result_.positions.emplace_back().position_index = 3;
-  log_.positions.push_back({13.0, {SubScan{}}, {}, {}});
-  result_.times.agreement_s = 0.5;
+  result_.components[0].scans[1].consistency = {0.5, 0.25, 0.125, true};
+  result_.components[1].scans[0].consistency = {0.0, 0.0, 1.0, true};
+  result_.scans.emplace_back().scan_index = 3;
+  log_.scans.push_back({13.0, {Sweep{}}, {}, {}});
+  result_.times.consistency_s = 0.5;
   const Json report = parsed();
   EXPECT_EQ(report["num_contradicting"], 1) << "of those in the map";
   const Json wanted = Json::parse(R"({"agree": 0.5, "through": 0.25, "in_free": 0.125, "contradicts_map": true})");
@@ -197,12 +197,12 @@ TEST_F(Report, TellsHowEachScanGoesWithTheRest) {
 }
 
 TEST_F(Report, TellsTheKeyframeThatAnAlignmentIsTo) {
-  result_.positions[1].is_keyframe = false;
-  const Json positions = parsed()["positions"];
-  EXPECT_EQ(positions[0]["is_keyframe"], true);
-  EXPECT_EQ(positions[1]["is_keyframe"], false);
-  EXPECT_EQ(positions[1]["alignment"]["reference"], 0);
-  EXPECT_EQ(positions[2]["alignment"]["reference"], 0) << "the one between stands for nothing";
+  result_.scans[1].is_keyframe = false;
+  const Json scans = parsed()["positions"];
+  EXPECT_EQ(scans[0]["is_keyframe"], true);
+  EXPECT_EQ(scans[1]["is_keyframe"], false);
+  EXPECT_EQ(scans[1]["alignment"]["reference"], 0);
+  EXPECT_EQ(scans[2]["alignment"]["reference"], 0) << "the one between stands for nothing";
 }
 
 TEST_F(Report, SaysThatARunWasCutShort) {

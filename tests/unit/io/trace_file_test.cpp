@@ -23,8 +23,8 @@ class TraceOfAWalk : public testing::Test {
   TraceOfAWalk() {
     for (std::size_t i = 0; i < 4; ++i) {
       const auto k = static_cast<double>(i);
-      log_.positions.push_back(test::scan_of(test::cluttered_room(2), {-0.4 + 0.15 * k, 0.02 * k * k, 0.02 * k}));
-      log_.positions.back().timestamp_s = 10.0 + k;
+      log_.scans.push_back(test::scan_of(test::cluttered_room(2), {-0.4 + 0.15 * k, 0.02 * k * k, 0.02 * k}));
+      log_.scans.back().timestamp_s = 10.0 + k;
     }
     selection_.skip = 7;
   }
@@ -89,7 +89,7 @@ TEST_F(TraceOfAWalk, NamesThePointsOfEachPair) {
         const auto& point = traced["position"].at(position)["points"].at(record["lcs"][i][2].get<std::size_t>());
         Pose2 ref_from_robot;
         for (const TracedTarget& t : comparison.targets[k]) {
-          if (t.position_index == position) ref_from_robot = t.ref_from_robot;
+          if (t.scan_index == position) ref_from_robot = t.ref_from_robot;
         }
         const Point2 p_m = ref_from_robot * Point2(point[0], point[1]);
         EXPECT_NEAR((p_m - match.lcs[i].target_m).norm(), 0.0, 1e-9) << enum_name(target) << " " << k << " " << i;
@@ -110,9 +110,9 @@ TEST_F(TraceOfAWalk, HasARecordForEachStep) {
   const auto& position = traced["position"][2];
   EXPECT_EQ(position["index_in_whole_log"], 9);
   EXPECT_EQ(position["timestamp_s"], 12.0);
-  const auto& sub_scan = position["sub_scans"].at(0);
-  EXPECT_EQ(sub_scan["scan_points"].size(), sub_scan["closest_segment"].size());
-  EXPECT_GT(sub_scan["segments"].size(), 3U);
+  const auto& sweep = position["sub_scans"].at(0);
+  EXPECT_EQ(sweep["scan_points"].size(), sweep["closest_segment"].size());
+  EXPECT_GT(sweep["segments"].size(), 3U);
   EXPECT_EQ(position["histograms"].size(), position["points"].size());
   ASSERT_EQ(traced["result"].size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -127,7 +127,7 @@ TEST_F(TraceOfAWalk, HasARecordForEachStep) {
 TEST_F(TraceOfAWalk, HoldsTheHistogramsThatMatchingSees) {
   write(path());
   const auto position = records(path())["position"][1];
-  const Shape shape = test::shape_of(log_.positions[1], options_);
+  const Shape shape = test::shape_of(log_.scans[1], options_);
   const auto expected = NeighbourDirections(shape, 0.50).histograms(0.0, HistogramNorm::kMaximum);
   ASSERT_EQ(position["histograms"].size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -147,8 +147,8 @@ TEST_F(TraceOfAWalk, HasTheAlternativesOfTheRobustMethod) {
   ASSERT_EQ(traced["link"].size(), 3U);
   ASSERT_EQ(traced["choice"].size(), 3U);
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t alternative = traced["choice"][k]["alternative"];
-    const auto& chosen = traced["link"][k]["hypotheses"].at(alternative);
+    const std::size_t candidate = traced["choice"][k]["alternative"];
+    const auto& chosen = traced["link"][k]["hypotheses"].at(candidate);
     const auto& result = traced["result"][k + 1];
     EXPECT_EQ(chosen["covariance"], result["covariance"]);
     EXPECT_EQ(chosen["pose"], result["ref_from_query"]);
@@ -166,17 +166,17 @@ TEST_F(TraceOfAWalk, TellsHowLinksInDoubtWereJudged) {
   ASSERT_EQ(traced["revision"].size(), 3U);
   for (std::size_t k = 0; k < 3; ++k) {
     const auto& revision = traced["revision"][k];
-    const auto& hypotheses = revision["hypotheses"];
-    ASSERT_GE(hypotheses.size(), traced["link"][k]["hypotheses"].size());
-    EXPECT_EQ(hypotheses[0]["pose"], traced["link"][k]["hypotheses"][0]["pose"]) << "new ones come behind";
-    for (const auto& hypothesis : hypotheses) {
-      EXPECT_GE(hypothesis["for_it"], 0.0);
-      EXPECT_GE(hypothesis["against_it"], 0.0);
-      EXPECT_GE(hypothesis["vouched"], 0.0);
+    const auto& candidates = revision["hypotheses"];
+    ASSERT_GE(candidates.size(), traced["link"][k]["hypotheses"].size());
+    EXPECT_EQ(candidates[0]["pose"], traced["link"][k]["hypotheses"][0]["pose"]) << "new ones come behind";
+    for (const auto& candidate : candidates) {
+      EXPECT_GE(candidate["for_it"], 0.0);
+      EXPECT_GE(candidate["against_it"], 0.0);
+      EXPECT_GE(candidate["vouched"], 0.0);
     }
-    EXPECT_LT(revision["in_map"], hypotheses.size());
+    EXPECT_LT(revision["in_map"], candidates.size());
     EXPECT_EQ(revision["alternative"], traced["choice"][k]["alternative"]);
-    EXPECT_EQ(revision["probability"], mapped.positions[k + 1].alignment.probability);
+    EXPECT_EQ(revision["probability"], mapped.scans[k + 1].alignment.probability);
   }
 }
 

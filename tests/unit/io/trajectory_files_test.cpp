@@ -84,7 +84,7 @@ TEST_F(TrajectoryFiles, BadMotionsAreNamedWithFileAndLine) {
 }
 
 TEST_F(TrajectoryFiles, TumLinesOfOursReadBack) {
-  std::vector<PlacedPosition> placed;
+  std::vector<PlacedScan> placed;
   for (int i = 0; i < 12; ++i) placed.push_back({0, 100.0 + i, {0.1 * i, -0.2 * i, wrap_angle(0.7 * i)}, {}});
   const std::vector<TimedPose> poses = read_tum_trajectory(write(tum_trajectory(placed)));
   ASSERT_EQ(poses.size(), placed.size());
@@ -107,17 +107,17 @@ TEST_F(TrajectoryFiles, BadTumLinesAreNamedWithFileAndLine) {
 
 TEST(Motions, AreThoseBetweenPlacedPositionsAfterAZeroForTheFirst) {
   MapResult result;
-  result.largest_fragment = 0;
-  result.fragments.emplace_back();
+  result.largest_component = 0;
+  result.components.emplace_back();
   for (std::size_t i = 0; i < 3; ++i) {
-    PositionResult position;
-    position.position_index = i;
+    ScanResult position;
+    position.scan_index = i;
     position.alignment.covariance = Eigen::Matrix3d::Identity() * static_cast<double>(i);
-    result.positions.push_back(position);
+    result.scans.push_back(position);
   }
   // The second position of the log has no place.
-  result.fragments[0].positions.push_back({0, 10.0, {1.0, 2.0, kPi / 2}, {}});
-  result.fragments[0].positions.push_back({2, 12.0, {1.0, 5.0, kPi}, {}});
+  result.components[0].scans.push_back({0, 10.0, {1.0, 2.0, kPi / 2}, {}});
+  result.components[0].scans.push_back({2, 12.0, {1.0, 5.0, kPi}, {}});
   const std::vector<TimedMotion> motions = motions_of(result);
   ASSERT_EQ(motions.size(), 2U);
   EXPECT_EQ(motions[0].timestamp_s, 10.0);
@@ -127,28 +127,28 @@ TEST(Motions, AreThoseBetweenPlacedPositionsAfterAZeroForTheFirst) {
   EXPECT_THAT(motions[1].previous_from_this, IsNearPose(Pose2{3.0, 0.0, kPi / 2}, 1e-12, 1e-12));
   EXPECT_EQ(motions[1].covariance, Eigen::Matrix3d::Identity() * 2.0);
 
-  result.positions[2].alignment.covariance(0, 0) = std::numeric_limits<double>::quiet_NaN();
-  result.positions[2].alignment.status = AlignStatus::kOk;
+  result.scans[2].alignment.covariance(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  result.scans[2].alignment.status = MatchStatus::kOk;
   EXPECT_THROW(motions_of(result), ConfigError) << "as by the paper's method";
-  result.positions[2].alignment.status = AlignStatus::kNoCorrespondences;
+  result.scans[2].alignment.status = MatchStatus::kNoCorrespondences;
   EXPECT_EQ(motions_of(result)[1].covariance, Eigen::Matrix3d::Identity()) << "loops alone put it there";
 }
 
 /// A keyframe and two scans that are aligned to it.
 struct Siblings : testing::Test {
   Siblings() {
-    result.largest_fragment = 0;
-    result.fragments.emplace_back();
+    result.largest_component = 0;
+    result.components.emplace_back();
     for (std::size_t i = 0; i < 3; ++i) {
-      PositionResult position;
-      position.position_index = i;
-      position.fragment = 0;
+      ScanResult position;
+      position.scan_index = i;
+      position.component = 0;
       position.is_keyframe = i == 0;
       position.alignment.covariance = Eigen::Vector3d(1e-4, 4e-4, 1e-5).asDiagonal();
       position.alignment.ranked.emplace_back();
       position.alignment.ranked.front().ref_from_query = poses[i];
-      result.positions.push_back(position);
-      result.fragments[0].positions.push_back({i, static_cast<double>(i), poses[i], {}});
+      result.scans.push_back(position);
+      result.components[0].scans.push_back({i, static_cast<double>(i), poses[i], {}});
     }
   }
   std::array<Pose2, 3> poses{Pose2{}, Pose2{0.5, 0.1, 1.2}, Pose2{0.9, -0.4, 1.9}};
@@ -157,7 +157,7 @@ struct Siblings : testing::Test {
 
 TEST_F(Siblings, MotionBetweenThemErrsByBothAlignments) {
   const std::vector<TimedMotion> motions = motions_of(result);
-  EXPECT_EQ(motions[1].covariance, result.positions[1].alignment.covariance) << "from the keyframe itself";
+  EXPECT_EQ(motions[1].covariance, result.scans[1].alignment.covariance) << "from the keyframe itself";
   std::mt19937 rng(7);
   std::normal_distribution<double> noise(0.0, 1.0);
   const auto disturbed = [&](const Pose2& pose) {
@@ -177,7 +177,7 @@ TEST_F(Siblings, MotionBetweenThemErrsByBothAlignments) {
 }
 
 TEST_F(Siblings, SomeOfThePlacedPositionsHaveMotionsAmongThemselves) {
-  const std::vector<PlacedPosition>& placed = result.fragments[0].positions;
+  const std::vector<PlacedScan>& placed = result.components[0].scans;
   const std::vector<TimedMotion> motions = motions_of(result, {placed[1], placed[2]});
   ASSERT_EQ(motions.size(), 2U);
   EXPECT_EQ(motions[0].timestamp_s, 1.0);

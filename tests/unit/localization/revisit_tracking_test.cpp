@@ -40,20 +40,20 @@ const MappingOptions& quick() {
 }
 
 /// What is followed after `num_settled` keyframes, whose part of the map is right.
-Revisits::Followed followed(const Laps& laps, const KnownChain& known, const std::vector<LoopHypothesis>& loops = {},
-                            std::size_t num_settled = kSettled) {
+RevisitTracker::Followed followed(const Laps& laps, const KnownChain& known,
+                                  const std::vector<LoopCandidate>& loops = {}, std::size_t num_settled = kSettled) {
   const MappingOptions options = quick();
-  Revisits revisits(options.robust);
-  KeyframeMap map = known.map;
+  RevisitTracker revisits(options.robust);
+  OptimizedMap map = known.map;
   std::copy(laps.truth.begin(), laps.truth.begin() + static_cast<std::ptrdiff_t>(num_settled),
             map.map_from_keyframe.begin());
   revisits.start(known.chain, map, num_settled);
   return revisits.follow(known.chain, loops);
 }
 
-std::size_t num_known(const Revisits::Followed& followed, std::size_t first = 0) {
-  return static_cast<std::size_t>(std::count_if(followed.stand_ins.begin() + static_cast<std::ptrdiff_t>(first),
-                                                followed.stand_ins.end(), [](const auto& s) { return s.has_value(); }));
+std::size_t num_known(const RevisitTracker::Followed& followed, std::size_t first = 0) {
+  return static_cast<std::size_t>(std::count_if(followed.redundant.begin() + static_cast<std::ptrdiff_t>(first),
+                                                followed.redundant.end(), [](const auto& s) { return s.has_value(); }));
 }
 
 /// The last few keyframes are left for later, and those before them may still be on a wrong way.
@@ -80,32 +80,32 @@ KnownChain wrong_at(const Laps& laps, std::size_t b, const Pose2& error) {
 /// And in doubt.
 KnownChain doubtful_at(const Laps& laps, std::size_t b, const Pose2& error) {
   KnownChain known = wrong_at(laps, b, error);
-  known.chain.links[b - 1].choice.margin = 0.01;  // another place fits as well
+  known.chain.edges[b - 1].choice.margin = 0.01;  // another place fits as well
   return known;
 }
 
-TEST(Revisits, KnowThePlacesOfTheLapBefore) {
+TEST(RevisitTracker, KnowThePlacesOfTheLapBefore) {
   const Laps& laps = two_laps();
-  const Revisits::Followed result = followed(laps, KnownChain(laps));
-  ASSERT_EQ(result.stand_ins.size(), laps.truth.size());
+  const RevisitTracker::Followed result = followed(laps, KnownChain(laps));
+  ASSERT_EQ(result.redundant.size(), laps.truth.size());
   EXPECT_EQ(result.num_followed, end_of_followed(laps));
   EXPECT_GT(num_known(result), (result.num_followed - kSettled) * 3 / 4);
   EXPECT_EQ(num_known(result, result.num_followed), 0U);
   for (std::size_t b = 0; b < laps.truth.size(); ++b) {
     EXPECT_THAT(result.map.map_from_keyframe[b], test::IsNearPose(laps.truth[b], 0.10, 2 * kDegree)) << b;
-    if (!result.stand_ins[b]) continue;
-    const StandIn& stand_in = *result.stand_ins[b];
-    EXPECT_LT(stand_in.keyframe, kSettled);
-    EXPECT_THAT(result.map.map_from_keyframe[stand_in.keyframe] * stand_in.pose.ref_from_query,
+    if (!result.redundant[b]) continue;
+    const ReplacementKeyframe& replacement = *result.redundant[b];
+    EXPECT_LT(replacement.keyframe, kSettled);
+    EXPECT_THAT(result.map.map_from_keyframe[replacement.keyframe] * replacement.pose.ref_from_query,
                 test::IsNearPose(laps.truth[b], 0.08, 2 * kDegree));
   }
 }
 
-TEST(Revisits, TakeTheErrorsOfTheChainAway) {
+TEST(RevisitTracker, TakeTheErrorsOfTheChainAway) {
   const Laps& laps = two_laps();
   const Pose2 error{0.02, 0.01, 0.3 * kDegree};
   const std::vector<Pose2> drifted = drifting(laps.truth, error);
-  const Revisits::Followed result = followed(laps, KnownChain(laps, drifted));
+  const RevisitTracker::Followed result = followed(laps, KnownChain(laps, drifted));
   const std::size_t last = result.num_followed - 1;
   const Pose2 chained = laps.truth[kSettled - 1] * inverse(drifted[kSettled - 1]) * drifted[last];
   EXPECT_GT((chained.translation() - laps.truth[last].translation()).norm(), 0.35);
@@ -113,28 +113,28 @@ TEST(Revisits, TakeTheErrorsOfTheChainAway) {
   EXPECT_GT(num_known(result), 6U);
 }
 
-TEST(Revisits, BelieveADoubtfulLinkWhenWhatComesAfterIsWhereItWasExpected) {
+TEST(RevisitTracker, BelieveADoubtfulLinkWhenWhatComesAfterIsWhereItWasExpected) {
   const Laps& laps = two_laps();
   constexpr std::size_t kDoubtful = kSettled + 4;
   const KnownChain known = doubtful_at(laps, kDoubtful, {});
-  ASSERT_LT(link_probability(known.chain.links[kDoubtful - 1]), 0.6);
-  const Revisits::Followed result = followed(laps, known);
+  ASSERT_LT(edge_probability(known.chain.edges[kDoubtful - 1]), 0.6);
+  const RevisitTracker::Followed result = followed(laps, known);
   EXPECT_EQ(num_known(result), num_known(followed(laps, KnownChain(laps))));
-  EXPECT_TRUE(result.map.held_by_loops[kDoubtful - 1]);
+  EXPECT_TRUE(result.map.loop_constrained[kDoubtful - 1]);
   EXPECT_EQ(result.map.component[result.num_followed - 1], 0U);
 }
 
 /// The chain took the wrong one of two alternatives.
-TEST(Revisits, TakeTheAlternativeAfterWhichPlacesAreKnownAgain) {
+TEST(RevisitTracker, TakeTheAlternativeAfterWhichPlacesAreKnownAgain) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
   KnownChain known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
-  std::vector<PoseHypothesis>& alternatives = known.chain.links[kWrong - 1].hypotheses;
-  alternatives.push_back(alternatives.front());
-  alternatives.back().ref_from_query = inverse(laps.truth[kWrong - 1]) * laps.truth[kWrong];
-  const Revisits::Followed result = followed(laps, known);
-  EXPECT_EQ(result.map.link_choice[kWrong - 1], 1);
-  EXPECT_TRUE(result.map.held_by_loops[kWrong - 1]);
+  std::vector<MatchCandidate>& candidates = known.chain.edges[kWrong - 1].candidates;
+  candidates.push_back(candidates.front());
+  candidates.back().ref_from_query = inverse(laps.truth[kWrong - 1]) * laps.truth[kWrong];
+  const RevisitTracker::Followed result = followed(laps, known);
+  EXPECT_EQ(result.map.edge_choice[kWrong - 1], 1);
+  EXPECT_TRUE(result.map.loop_constrained[kWrong - 1]);
   EXPECT_EQ(num_known(result), num_known(followed(laps, KnownChain(laps))));
   for (std::size_t b = 0; b < result.num_followed; ++b) {
     EXPECT_THAT(result.map.map_from_keyframe[b], test::IsNearPose(laps.truth[b], 0.10, 2 * kDegree)) << b;
@@ -146,167 +146,169 @@ TEST(Revisits, TakeTheAlternativeAfterWhichPlacesAreKnownAgain) {
   }
 }
 
-TEST(Revisits, TakeEitherOfTwoAlternativesThatAreOnePlace) {
+TEST(RevisitTracker, TakeEitherOfTwoAlternativesThatAreOnePlace) {
   const Laps& laps = two_laps();
   constexpr std::size_t kDoubtful = kSettled + 4;
   KnownChain known = doubtful_at(laps, kDoubtful, {0.7, 0.0, 5 * kDegree});
-  std::vector<PoseHypothesis>& alternatives = known.chain.links[kDoubtful - 1].hypotheses;
+  std::vector<MatchCandidate>& candidates = known.chain.edges[kDoubtful - 1].candidates;
   for (const double off_m : {0.01, -0.01}) {
-    alternatives.push_back(alternatives.front());
-    alternatives.back().ref_from_query =
+    candidates.push_back(candidates.front());
+    candidates.back().ref_from_query =
         inverse(laps.truth[kDoubtful - 1]) * laps.truth[kDoubtful] * Pose2{off_m, 0.0, 0.0};
   }
-  const Revisits::Followed result = followed(laps, known);
-  EXPECT_GT(result.map.link_choice[kDoubtful - 1], 0);
+  const RevisitTracker::Followed result = followed(laps, known);
+  EXPECT_GT(result.map.edge_choice[kDoubtful - 1], 0);
   EXPECT_GT(num_known(result, kDoubtful), 10U);
 }
 
-TEST(Revisits, KnowNothingAgainAfterAWrongLink) {
+TEST(RevisitTracker, KnowNothingAgainAfterAWrongLink) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
-  const Revisits::Followed result = followed(laps, doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}));
+  const RevisitTracker::Followed result = followed(laps, doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}));
   EXPECT_EQ(num_known(result, kWrong), 0U);
-  EXPECT_FALSE(result.map.held_by_loops[kWrong - 1]);
+  EXPECT_FALSE(result.map.loop_constrained[kWrong - 1]);
   EXPECT_EQ(result.num_followed, kWrong);
   for (std::size_t b = kWrong; b < end_of_followed(laps); ++b) EXPECT_NE(result.map.component[b], 0U) << b;
 }
 
 /// A hypothesis that keyframe `b` is where it was a lap ago.
-LoopHypothesis loop_to(const Laps& laps, std::size_t b) {
+LoopCandidate loop_to(const Laps& laps, std::size_t b) {
   const std::size_t a = b - test::kRingLap;
   return {a, b, inverse(laps.truth[a]) * laps.truth[b], Eigen::Matrix3d::Identity() * 1e-4, 2.0};
 }
 
-TEST(Revisits, FindTheWayAgainWhereALoopPutsIt) {
+TEST(RevisitTracker, FindTheWayAgainWhereALoopPutsIt) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
   const KnownChain known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
-  LoopHypothesis wrong = loop_to(laps, kWrong + 7);
+  LoopCandidate wrong = loop_to(laps, kWrong + 7);
   wrong.a -= 5;
   wrong.log_odds = 3.0;
-  const Revisits::Followed result = followed(laps, known, {wrong, loop_to(laps, kWrong + 9)});
+  const RevisitTracker::Followed result = followed(laps, known, {wrong, loop_to(laps, kWrong + 9)});
   EXPECT_EQ(result.num_followed, laps.truth.size() - kKeyframesInUse);
   EXPECT_GE(num_known(result) + 2, num_known(followed(laps, KnownChain(laps))));  // the two at the link stay
   for (std::size_t b = 0; b < result.num_followed; ++b) {
     EXPECT_EQ(result.map.component[b], 0U) << b;
     EXPECT_THAT(result.map.map_from_keyframe[b], test::IsNearPose(laps.truth[b], 0.10, 2 * kDegree)) << b;
   }
-  EXPECT_EQ(result.map.link_choice[kWrong - 1], kCut);  // none of its hypotheses is where the robot went
+  EXPECT_EQ(result.map.edge_choice[kWrong - 1], kCut);  // none of its hypotheses is where the robot went
 }
 
-TEST(Revisits, FindNoWayWhereALoopIsWrong) {
+TEST(RevisitTracker, FindNoWayWhereALoopIsWrong) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
-  LoopHypothesis wrong = loop_to(laps, kWrong + 9);
+  LoopCandidate wrong = loop_to(laps, kWrong + 9);
   wrong.a -= 6;
-  const Revisits::Followed result = followed(laps, doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}), {wrong});
+  const RevisitTracker::Followed result = followed(laps, doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}), {wrong});
   EXPECT_EQ(result.num_followed, kWrong);
   EXPECT_EQ(num_known(result, kWrong), 0U);
 }
 
 /// A link that was taken for sure.
-TEST(Revisits, GetLostWhereSomethingElseIsSeen) {
+TEST(RevisitTracker, GetLostWhereSomethingElseIsSeen) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
   KnownChain known = wrong_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
-  known.chain.links[kWrong - 1].hypotheses = known.chain.links[kWrong - 2].hypotheses;  // sure by what it seems to be
-  known.chain.links[kWrong - 1].hypotheses.front().ref_from_query =
+  known.chain.edges[kWrong - 1].candidates = known.chain.edges[kWrong - 2].candidates;  // sure by what it seems to be
+  known.chain.edges[kWrong - 1].candidates.front().ref_from_query =
       inverse(laps.truth[kWrong - 1]) * laps.truth[kWrong] * Pose2{0.7, 0.0, 5 * kDegree};
-  ASSERT_GE(stated_probability(known.chain.links[kWrong - 1]), kSureLink);
-  const Revisits::Followed result = followed(laps, known);
+  ASSERT_GE(stated_probability(known.chain.edges[kWrong - 1]), kSureLink);
+  const RevisitTracker::Followed result = followed(laps, known);
   EXPECT_LE(result.num_followed, kWrong + 2);
   EXPECT_EQ(num_known(result, kWrong), 0U);
 }
 
 /// Errors that add up where nobody has been get no robot lost, and none of those keyframes goes.
-TEST(Revisits, GoOnWhereNobodyHasBeen) {
+TEST(RevisitTracker, GoOnWhereNobodyHasBeen) {
   const Laps& laps = two_laps();
   constexpr std::size_t kHalf = test::kRingLap / 2;
-  const Revisits::Followed result = followed(laps, KnownChain(laps), {}, kHalf);
+  const RevisitTracker::Followed result = followed(laps, KnownChain(laps), {}, kHalf);
   EXPECT_EQ(result.num_followed, end_of_followed(laps));
-  for (std::size_t b = kHalf; b + 2 < test::kRingLap; ++b) EXPECT_FALSE(result.stand_ins[b]) << b;
+  for (std::size_t b = kHalf; b + 2 < test::kRingLap; ++b) EXPECT_FALSE(result.redundant[b]) << b;
   EXPECT_GT(num_known(result), (end_of_followed(laps) - test::kRingLap) / 2);
   EXPECT_EQ(result.map.component[result.num_followed - 1], 0U);
 }
 
 /// What is not certain yet stays in doubt also when the keyframe before it is known again, and goes.
-TEST(Revisits, LeaveTheLinkToWhatComesNextAsItIs) {
+TEST(RevisitTracker, LeaveTheLinkToWhatComesNextAsItIs) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
   for (const bool lost : {false, true}) {
     KnownChain known = lost ? doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}) : KnownChain(laps);
-    Revisits::Followed result = followed(laps, known);
+    RevisitTracker::Followed result = followed(laps, known);
     const std::size_t next = laps.truth.size() - result.num_followed;
-    LoopKnowledge loops;
-    retire_keyframes(result.stand_ins, quick(), result.map, known.chain, loops);
+    LoopCandidates loops;
+    cull_keyframes(result.redundant, quick(), result.map, known.chain, loops);
     const std::size_t first_open = known.chain.keyframes.size() - next;
-    EXPECT_FALSE(known.chain.links[first_open].settled_covariance);
-    EXPECT_TRUE(!lost || !known.chain.links[first_open - 1].settled_covariance);
+    EXPECT_FALSE(known.chain.edges[first_open].culled_covariance);
+    EXPECT_TRUE(!lost || !known.chain.edges[first_open - 1].culled_covariance);
   }
 }
 
-TEST(Revisits, ForgiveAPlaceThatHasChanged) {
+TEST(RevisitTracker, ForgiveAPlaceThatHasChanged) {
   const Laps& laps = two_laps();
   constexpr std::size_t kChanged = kSettled + 9;
   KnownChain known(laps);
   known.chain.keyframes[kChanged].view = known.chain.keyframes[kChanged - 20].view;
-  const Revisits::Followed result = followed(laps, known);
-  EXPECT_FALSE(result.stand_ins[kChanged]);
+  const RevisitTracker::Followed result = followed(laps, known);
+  EXPECT_FALSE(result.redundant[kChanged]);
   EXPECT_EQ(result.num_followed, end_of_followed(laps));
   EXPECT_GE(num_known(result) + 2, num_known(followed(laps, KnownChain(laps))));
 }
 
-TEST(Revisits, KnowNothingAgainInAnotherLog) {
+TEST(RevisitTracker, KnowNothingAgainInAnotherLog) {
   const Laps& laps = two_laps();
   constexpr std::size_t kStart = kSettled + 4;
   KnownChain known(laps);
-  known.chain.links[kStart - 1] = {};
-  known.chain.links[kStart - 2].bonus = no_bonus(known.chain.links[kStart - 2], known.chain.links[kStart - 1]);
-  known.chain.links[kStart - 1].bonus = no_bonus(known.chain.links[kStart - 1], known.chain.links[kStart]);
-  choose_hypotheses(known.chain);
-  const Revisits::Followed result = followed(laps, known);
-  EXPECT_EQ(result.map.link_choice[kStart - 1], kCut);
+  known.chain.edges[kStart - 1] = {};
+  known.chain.edges[kStart - 2].transition_scores =
+      no_transition_scores(known.chain.edges[kStart - 2], known.chain.edges[kStart - 1]);
+  known.chain.edges[kStart - 1].transition_scores =
+      no_transition_scores(known.chain.edges[kStart - 1], known.chain.edges[kStart]);
+  choose_candidates(known.chain);
+  const RevisitTracker::Followed result = followed(laps, known);
+  EXPECT_EQ(result.map.edge_choice[kStart - 1], kCut);
   EXPECT_EQ(num_known(result, kStart), 0U);
   EXPECT_EQ(num_known(followed(laps, known, {loop_to(laps, kStart + 9)}), kStart), 0U);
   for (std::size_t b = kStart; b < end_of_followed(laps); ++b) EXPECT_NE(result.map.component[b], 0U) << b;
 }
 
 /// In small portions, with keyframes retired between, as the log is read.
-TEST(Revisits, GoOnWhereTheyWere) {
+TEST(RevisitTracker, GoOnWhereTheyWere) {
   const Laps& laps = two_laps();
   KnownChain all(laps);
   KnownChain known(laps);
   known.chain.keyframes.resize(kSettled + kKeyframesInUse);
-  known.chain.links.resize(kSettled + kKeyframesInUse - 1);
-  choose_hypotheses(known.chain);
-  KeyframeMap map = known.map;
+  known.chain.edges.resize(kSettled + kKeyframesInUse - 1);
+  choose_candidates(known.chain);
+  OptimizedMap map = known.map;
   map.map_from_keyframe.resize(known.chain.keyframes.size());
   map.component.resize(known.chain.keyframes.size());
-  map.link_choice.resize(known.chain.links.size());
-  map.held_by_loops.resize(known.chain.links.size());
+  map.edge_choice.resize(known.chain.edges.size());
+  map.loop_constrained.resize(known.chain.edges.size());
   const MappingOptions options = quick();
-  Revisits revisits(options.robust);
+  RevisitTracker revisits(options.robust);
   revisits.start(known.chain, map, kSettled);
-  LoopKnowledge loops;
+  LoopCandidates loops;
   std::size_t num_retired = 0;
   for (std::size_t next = kSettled + kKeyframesInUse; next < laps.truth.size(); next += 7) {
     for (std::size_t i = next; i < std::min(next + 7, laps.truth.size()); ++i) {
       known.chain.keyframes.push_back(all.chain.keyframes[i]);
-      known.chain.links.push_back(all.chain.links[i - 1]);
+      known.chain.edges.push_back(all.chain.edges[i - 1]);
     }
-    choose_hypotheses(known.chain);
-    Revisits::Followed result = revisits.follow(known.chain, {});
+    choose_candidates(known.chain);
+    RevisitTracker::Followed result = revisits.follow(known.chain, {});
     num_retired += num_known(result);
     const std::size_t num_open = known.chain.keyframes.size() - result.num_followed;
-    retire_keyframes(result.stand_ins, quick(), result.map, known.chain, loops);
+    cull_keyframes(result.redundant, quick(), result.map, known.chain, loops);
     ASSERT_EQ(result.map.map_from_keyframe.size(), known.chain.keyframes.size());
     for (std::size_t i = 0; i < known.chain.keyframes.size(); ++i) {
-      const Pose2& truth = laps.truth[known.chain.keyframes[i].position_index];
+      const Pose2& truth = laps.truth[known.chain.keyframes[i].scan_index];
       EXPECT_THAT(result.map.map_from_keyframe[i], test::IsNearPose(truth, 0.10, 2 * kDegree));
     }
     for (const PoseConstraint& constraint : result.map.constraints) {
-      const Pose2& a = laps.truth[known.chain.keyframes[constraint.a].position_index];
-      const Pose2& b = laps.truth[known.chain.keyframes[constraint.b].position_index];
+      const Pose2& a = laps.truth[known.chain.keyframes[constraint.a].scan_index];
+      const Pose2& b = laps.truth[known.chain.keyframes[constraint.b].scan_index];
       EXPECT_THAT(constraint.a_from_b, test::IsNearPose(inverse(a) * b, 0.10, 2 * kDegree));
     }
     revisits.renew(std::move(result.map), num_open);

@@ -24,7 +24,7 @@ TEST(LoopRivals, AreThoseThatShareNodesByWhatTheySayOfThese) {
       cluster_of({{20, 51}, {21, 52}, {22, 53}}, 1.0),  // shares 51 and 52
       cluster_of({{52, 80}, {53, 81}}, 0.0),            // shares 52, as the earlier ones of its own
       cluster_of({{30, 60}, {31, 61}}, 5.0)};           // shares nothing
-  const std::vector<std::vector<LoopRival>> rivals = loop_rivals(clusters);
+  const std::vector<std::vector<ConflictingLoop>> rivals = conflicting_loops(clusters);
   ASSERT_EQ(rivals.size(), 4U);
   ASSERT_EQ(rivals[0].size(), 2U);
   EXPECT_EQ(rivals[0][0].cluster, 1U);
@@ -39,10 +39,10 @@ TEST(LoopRivals, AreThoseThatShareNodesByWhatTheySayOfThese) {
 TEST(LoopRivals, AreNoStrongerThanTheirCluster) {
   std::vector<LoopCluster> clusters{cluster_of({{1, 50}, {2, 51}}, 2.0), cluster_of({{20, 50}, {21, 51}}, 4.0)};
   clusters[1].strength = 5.0;
-  EXPECT_DOUBLE_EQ(loop_rivals(clusters)[0][0].strength, 5.0);
+  EXPECT_DOUBLE_EQ(conflicting_loops(clusters)[0][0].strength, 5.0);
   clusters[1].strength = 0.5;
-  EXPECT_TRUE(loop_rivals(clusters)[0].empty()) << "too weak";
-  EXPECT_TRUE(loop_rivals({}).empty());
+  EXPECT_TRUE(conflicting_loops(clusters)[0].empty()) << "too weak";
+  EXPECT_TRUE(conflicting_loops({}).empty());
 }
 
 /// Slowly: for each two clusters, each node of each stretch by itself.
@@ -50,13 +50,13 @@ double by_each_node(const LoopCluster& one, const LoopCluster& other) {
   double strongest = 0.0;
   for (const bool later : {false, true}) {
     std::vector<std::size_t> nodes;
-    for (const LoopHypothesis& member : one.members) nodes.push_back(later ? member.b : member.a);
+    for (const LoopCandidate& member : one.members) nodes.push_back(later ? member.b : member.a);
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     double sum = 0.0;
     for (const std::size_t n : nodes) {
       double best = 0.0;
-      for (const LoopHypothesis& member : other.members) {
+      for (const LoopCandidate& member : other.members) {
         if (member.a == n || member.b == n) best = std::max(best, worth_of_member(member));
       }
       sum += best;
@@ -79,11 +79,11 @@ TEST(LoopRivals, AreThoseThatASlowSearchFinds) {
       }
       cluster.strength = 5.0 + odds(rng);
     }
-    const std::vector<std::vector<LoopRival>> rivals = loop_rivals(clusters);
+    const std::vector<std::vector<ConflictingLoop>> rivals = conflicting_loops(clusters);
     for (std::size_t k = 0; k < clusters.size(); ++k) {
       for (std::size_t other = 0; other < clusters.size(); ++other) {
         const auto found = std::find_if(rivals[k].begin(), rivals[k].end(),
-                                        [&](const LoopRival& rival) { return rival.cluster == other; });
+                                        [&](const ConflictingLoop& rival) { return rival.cluster == other; });
         const double expected = k == other ? 0.0 : by_each_node(clusters[k], clusters[other]);
         ASSERT_EQ(found != rivals[k].end(), expected > 1.0) << round << " " << k << " " << other;
         if (expected > 1.0) {

@@ -17,11 +17,11 @@ namespace {
 
 using Key = std::tuple<std::size_t, std::size_t, double>;  // no two hypotheses of a test have the same log odds
 
-Key key_of(const LoopHypothesis& hypothesis) { return {hypothesis.a, hypothesis.b, hypothesis.log_odds}; }
+Key key_of(const LoopCandidate& candidate) { return {candidate.a, candidate.b, candidate.log_odds}; }
 
 std::set<Key> keys_of(const LoopCluster& cluster) {
   std::set<Key> keys;
-  for (const LoopHypothesis& member : cluster.members) keys.insert(key_of(member));
+  for (const LoopCandidate& member : cluster.members) keys.insert(key_of(member));
   return keys;
 }
 
@@ -39,16 +39,16 @@ struct Way {
   }
 
   /// As if the map were bent between the two stretches by `bend`, with an error of its own for each.
-  LoopHypothesis hypothesis(std::size_t a, std::size_t b, const Pose2& bend, double error) {
+  LoopCandidate candidate(std::size_t a, std::size_t b, const Pose2& bend, double error) {
     std::uniform_real_distribution<double> log_odds(-3.0, 6.0);
     const Pose2 a_from_b = inverse(poses[a]) * bend * poses[b] * test::random_pose(rng, error, error);
     return {a, b, a_from_b, Eigen::Matrix3d::Identity(), log_odds(rng)};
   }
 
-  std::vector<LoopHypothesis> planted(const Pose2& bend) {
-    std::vector<LoopHypothesis> hypotheses;
-    for (std::size_t k = 0; k < 10; ++k) hypotheses.push_back(hypothesis(5 + k, 40 + k, bend, 0.01));
-    return hypotheses;
+  std::vector<LoopCandidate> planted(const Pose2& bend) {
+    std::vector<LoopCandidate> candidates;
+    for (std::size_t k = 0; k < 10; ++k) candidates.push_back(candidate(5 + k, 40 + k, bend, 0.01));
+    return candidates;
   }
 
   std::mt19937 rng;
@@ -60,75 +60,74 @@ TEST(LoopClusters, HoldWhatIsConsistentAndLeaveOutWhatIsNot) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Way way(seed);
     const Pose2 bend = test::random_pose(way.rng, 3.0, kPi);
-    std::vector<LoopHypothesis> hypotheses = way.planted(bend);
+    std::vector<LoopCandidate> candidates = way.planted(bend);
     std::set<Key> expected;
-    for (const LoopHypothesis& hypothesis : hypotheses) expected.insert(key_of(hypothesis));
+    for (const LoopCandidate& candidate : candidates) expected.insert(key_of(candidate));
     for (std::size_t k = 0; k < 10; ++k) {  // none agrees with any other
       const Pose2 wrong = bend * Pose2{2.0 + 3.0 * static_cast<double>(k), 0.0, 0.0};
-      hypotheses.push_back(way.hypothesis(5 + k, 40 + k, wrong, 0.0));
+      candidates.push_back(way.candidate(5 + k, 40 + k, wrong, 0.0));
     }
-    const std::vector<LoopCluster> clusters = loop_clusters(hypotheses, way.poses, way.pieces, {});
+    const std::vector<LoopCluster> clusters = loop_clusters(candidates, way.poses, way.pieces, {});
     ASSERT_EQ(clusters.size(), 1U) << seed;
     EXPECT_EQ(keys_of(clusters[0]), expected) << seed;
     EXPECT_EQ(clusters[0].num_a, 10U);
     EXPECT_EQ(clusters[0].num_b, 10U);
-    EXPECT_TRUE(
-        std::is_sorted(clusters[0].members.begin(), clusters[0].members.end(),
-                       [](const LoopHypothesis& x, const LoopHypothesis& y) { return x.log_odds > y.log_odds; }));
+    EXPECT_TRUE(std::is_sorted(clusters[0].members.begin(), clusters[0].members.end(),
+                               [](const LoopCandidate& x, const LoopCandidate& y) { return x.log_odds > y.log_odds; }));
   }
 }
 
 TEST(LoopClusters, DoNotReachFromOnePieceToTheNext) {
   Way way(1);
-  const std::vector<LoopHypothesis> hypotheses = way.planted({1.0, 0.0, 0.5});
-  ASSERT_EQ(loop_clusters(hypotheses, way.poses, way.pieces, {}).size(), 1U);
+  const std::vector<LoopCandidate> candidates = way.planted({1.0, 0.0, 0.5});
+  ASSERT_EQ(loop_clusters(candidates, way.poses, way.pieces, {}).size(), 1U);
   const auto cut_at = [&](std::size_t node) {
     std::vector<std::size_t> pieces(way.poses.size(), 0);
     for (std::size_t n = node; n < pieces.size(); ++n) pieces[n] = 1;
     return pieces;
   };
-  const std::vector<LoopCluster> two_first = loop_clusters(hypotheses, way.poses, cut_at(8), {});
+  const std::vector<LoopCluster> two_first = loop_clusters(candidates, way.poses, cut_at(8), {});
   ASSERT_EQ(two_first.size(), 2U) << "nodes 5 to 7, and the seven after";
   EXPECT_THAT((std::set<std::size_t>{two_first[0].num_a, two_first[1].num_a}), testing::ElementsAre(3, 7));
-  const std::vector<LoopCluster> two_last = loop_clusters(hypotheses, way.poses, cut_at(44), {});
+  const std::vector<LoopCluster> two_last = loop_clusters(candidates, way.poses, cut_at(44), {});
   ASSERT_EQ(two_last.size(), 2U) << "nodes 40 to 43, and the six after";
   EXPECT_EQ(two_last[0].num_b + two_last[1].num_b, 10U);
-  EXPECT_EQ(loop_clusters(hypotheses, way.poses, cut_at(20), {}).size(), 1U) << "a cut between the two stretches";
+  EXPECT_EQ(loop_clusters(candidates, way.poses, cut_at(20), {}).size(), 1U) << "a cut between the two stretches";
 }
 
 TEST(LoopClusters, NeedSeveralNodesOnEitherSide) {
   Way way(2);
-  std::vector<LoopHypothesis> hypotheses;
-  for (std::size_t k = 0; k < 4; ++k) hypotheses.push_back(way.hypothesis(5, 40 + k, {}, 0.0));
-  EXPECT_TRUE(loop_clusters(hypotheses, way.poses, way.pieces, {}).empty()) << "all of it hangs on one scan";
-  hypotheses.push_back(way.hypothesis(6, 41, {}, 0.0));
-  EXPECT_EQ(loop_clusters(hypotheses, way.poses, way.pieces, {}).size(), 1U);
+  std::vector<LoopCandidate> candidates;
+  for (std::size_t k = 0; k < 4; ++k) candidates.push_back(way.candidate(5, 40 + k, {}, 0.0));
+  EXPECT_TRUE(loop_clusters(candidates, way.poses, way.pieces, {}).empty()) << "all of it hangs on one scan";
+  candidates.push_back(way.candidate(6, 41, {}, 0.0));
+  EXPECT_EQ(loop_clusters(candidates, way.poses, way.pieces, {}).size(), 1U);
   ClusterOptions options;
   options.least_nodes = 3;
-  EXPECT_TRUE(loop_clusters(hypotheses, way.poses, way.pieces, options).empty());
+  EXPECT_TRUE(loop_clusters(candidates, way.poses, way.pieces, options).empty());
   EXPECT_TRUE(loop_clusters({}, way.poses, way.pieces, {}).empty());
 }
 
 /// Enough of them near enough to each other that all cases come up.
-std::vector<LoopHypothesis> random_hypotheses(Way& way, std::size_t count) {
+std::vector<LoopCandidate> random_hypotheses(Way& way, std::size_t count) {
   const std::vector<Pose2> bends{{}, {0.3, 0.0, 0.0}, {0.0, 0.0, 0.08}, {5.0, 1.0, 1.0}};
   std::uniform_int_distribution<std::size_t> first(0, 20);
   std::uniform_int_distribution<std::size_t> last(35, 59);
   std::uniform_int_distribution<std::size_t> any(0, bends.size() - 1);
-  std::vector<LoopHypothesis> hypotheses;
-  while (hypotheses.size() < count) {
+  std::vector<LoopCandidate> candidates;
+  while (candidates.size() < count) {
     const std::size_t a = first(way.rng);
     const std::size_t b = last(way.rng);
-    hypotheses.push_back(way.hypothesis(a, b, bends[any(way.rng)], 0.05));
+    candidates.push_back(way.candidate(a, b, bends[any(way.rng)], 0.05));
   }
-  return hypotheses;
+  return candidates;
 }
 
 /// Whether two hypotheses support each other: of neighbouring nodes, and by way of the first of the later ones they say
 /// the same.
-bool support(const Way& way, const LoopHypothesis& x, const LoopHypothesis& y, const ClusterOptions& options) {
-  const LoopHypothesis& one = x.b <= y.b ? x : y;
-  const LoopHypothesis& other = x.b <= y.b ? y : x;
+bool support(const Way& way, const LoopCandidate& x, const LoopCandidate& y, const ClusterOptions& options) {
+  const LoopCandidate& one = x.b <= y.b ? x : y;
+  const LoopCandidate& other = x.b <= y.b ? y : x;
   const auto window = static_cast<double>(options.window);
   if (std::abs(static_cast<double>(one.a) - static_cast<double>(other.a)) > window ||
       static_cast<double>(other.b - one.b) > window || way.pieces[one.a] != way.pieces[other.a] ||
@@ -142,17 +141,17 @@ bool support(const Way& way, const LoopHypothesis& x, const LoopHypothesis& y, c
 }
 
 /// Groups of all that support each other, by flood fill.
-std::set<std::set<Key>> by_flood_fill(const Way& way, const std::vector<LoopHypothesis>& hypotheses,
+std::set<std::set<Key>> by_flood_fill(const Way& way, const std::vector<LoopCandidate>& candidates,
                                       const ClusterOptions& options) {
   std::set<std::set<Key>> groups;
-  std::vector<bool> seen(hypotheses.size(), false);
-  for (std::size_t first = 0; first < hypotheses.size(); ++first) {
+  std::vector<bool> seen(candidates.size(), false);
+  for (std::size_t first = 0; first < candidates.size(); ++first) {
     if (seen[first]) continue;
     std::vector<std::size_t> group{first};
     seen[first] = true;
     for (std::size_t g = 0; g < group.size(); ++g) {
-      for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-        if (seen[i] || !support(way, hypotheses[group[g]], hypotheses[i], options)) continue;
+      for (std::size_t i = 0; i < candidates.size(); ++i) {
+        if (seen[i] || !support(way, candidates[group[g]], candidates[i], options)) continue;
         seen[i] = true;
         group.push_back(i);
       }
@@ -161,9 +160,9 @@ std::set<std::set<Key>> by_flood_fill(const Way& way, const std::vector<LoopHypo
     std::set<std::size_t> of_a;
     std::set<std::size_t> of_b;
     for (const std::size_t i : group) {
-      keys.insert(key_of(hypotheses[i]));
-      of_a.insert(hypotheses[i].a);
-      of_b.insert(hypotheses[i].b);
+      keys.insert(key_of(candidates[i]));
+      of_a.insert(candidates[i].a);
+      of_b.insert(candidates[i].b);
     }
     const auto least = static_cast<std::size_t>(options.least_nodes);
     if (of_a.size() >= least && of_b.size() >= least) groups.insert(keys);
@@ -176,14 +175,14 @@ TEST(LoopClusters, AreTheGroupsThatAFloodFillFindsWhateverTheOrder) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
     Way way(seed);
     for (std::size_t node = 10 + seed % 5; node < way.pieces.size(); ++node) way.pieces[node] = node < 48 ? 1 : 2;
-    std::vector<LoopHypothesis> hypotheses = random_hypotheses(way, 20 + 4 * seed);
+    std::vector<LoopCandidate> candidates = random_hypotheses(way, 20 + 4 * seed);
     ClusterOptions options;
     options.window = 1 + static_cast<int>(seed % 5);
-    const std::set<std::set<Key>> expected = by_flood_fill(way, hypotheses, options);
+    const std::set<std::set<Key>> expected = by_flood_fill(way, candidates, options);
     num_clusters += expected.size();
     for (int order = 0; order < 4; ++order) {
-      EXPECT_EQ(keys_of(loop_clusters(hypotheses, way.poses, way.pieces, options)), expected) << seed;
-      std::shuffle(hypotheses.begin(), hypotheses.end(), way.rng);
+      EXPECT_EQ(keys_of(loop_clusters(candidates, way.poses, way.pieces, options)), expected) << seed;
+      std::shuffle(candidates.begin(), candidates.end(), way.rng);
     }
   }
   EXPECT_GT(num_clusters, 60U);
@@ -196,7 +195,7 @@ TEST(LoopClusters, AreAsStrongAsTheirWeakerSideAndTheStrongestComesFirst) {
     for (std::size_t k = 0; k < clusters.size(); ++k) {
       std::map<std::size_t, double> by_a;
       std::map<std::size_t, double> by_b;
-      for (const LoopHypothesis& member : clusters[k].members) {
+      for (const LoopCandidate& member : clusters[k].members) {
         const double worth = std::min(6.0, std::max(0.0, member.log_odds + 2.0));
         by_a[member.a] = std::max(by_a[member.a], worth);
         by_b[member.b] = std::max(by_b[member.b], worth);

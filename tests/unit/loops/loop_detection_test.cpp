@@ -21,18 +21,18 @@ using test::kRingLap;
 
 using Pair = std::pair<std::size_t, std::size_t>;
 
-std::set<Pair> pairs_of(const std::vector<LoopHypothesis>& hypotheses) {
+std::set<Pair> pairs_of(const std::vector<LoopCandidate>& candidates) {
   std::set<Pair> pairs;
-  for (const LoopHypothesis& hypothesis : hypotheses) pairs.emplace(hypothesis.a, hypothesis.b);
+  for (const LoopCandidate& candidate : candidates) pairs.emplace(candidate.a, candidate.b);
   return pairs;
 }
 
 /// A coarse search: what is asked for here is not how well it aligns.
-HypothesisSearchOptions quick() {
-  HypothesisSearchOptions search;
-  search.hypotheses.rotation_peaks = 4;
-  search.hypotheses.refined = 4;
-  search.hypotheses.kept = 3;
+MatchSearchOptions quick() {
+  MatchSearchOptions search;
+  search.candidates.rotation_peaks = 4;
+  search.candidates.refined = 4;
+  search.candidates.kept = 3;
   search.voting.peaks = 6;
   return search;
 }
@@ -63,21 +63,21 @@ const Ring& ring() {
 }
 
 /// Without a store.
-LoopSearch by(const HypothesisSearchOptions& matching, const LoopDetectionOptions& detection, RunObserver& observer,
+LoopSearch by(const MatchSearchOptions& matching, const LoopDetectionOptions& detection, RunObserver& observer,
               int threads = 1) {
   return {matching, detection, {threads, observer}, nullptr};
 }
 
 TEST(LikelyLoops, FindsThePlacesThatWereSeenBefore) {
-  const HypothesisSearchOptions matching = quick();
+  const MatchSearchOptions matching = quick();
   RunObserver nobody;
   LoopDetectionOptions options;
   options.likely_places = 5;
   options.shortest_loop = 30;
-  const std::vector<LoopHypothesis> found = likely_loops(ring().views, 0, by(matching, options, nobody));
+  const std::vector<LoopCandidate> found = likely_loops(ring().views, 0, by(matching, options, nobody));
   std::map<std::size_t, std::set<std::size_t>> places;
   std::set<std::size_t> right;
-  for (const LoopHypothesis& loop : found) {
+  for (const LoopCandidate& loop : found) {
     ASSERT_LE(loop.a + 30, loop.b) << "too short a loop";
     ASSERT_LT(loop.b, ring().views.size());
     const double of_slipping = std::log(std::max(1.0, worst_deviation_m(loop.covariance) / 0.2));
@@ -94,7 +94,7 @@ TEST(LikelyLoops, FindsThePlacesThatWereSeenBefore) {
 }
 
 TEST(LikelyLoops, OfAWalkThatIsTooShortAreNone) {
-  const HypothesisSearchOptions matching = quick();
+  const MatchSearchOptions matching = quick();
   const LoopDetectionOptions detection;
   RunObserver nobody;
   const test::Views few(ring().views.begin(), ring().views.begin() + 10);
@@ -103,14 +103,14 @@ TEST(LikelyLoops, OfAWalkThatIsTooShortAreNone) {
 }
 
 TEST(LikelyLoops, StopsWhenItIsAskedTo) {
-  const HypothesisSearchOptions matching = quick();
+  const MatchSearchOptions matching = quick();
   LoopDetectionOptions options;
   options.likely_places = 4;
   Patience none(0);
   EXPECT_TRUE(likely_loops(ring().views, 0, by(matching, options, none)).empty());
   EXPECT_EQ(none.done, 0U);
   Patience one(1);
-  const std::vector<LoopHypothesis> some = likely_loops(ring().views, 0, by(matching, options, one));
+  const std::vector<LoopCandidate> some = likely_loops(ring().views, 0, by(matching, options, one));
   EXPECT_GT(one.done, 0U);
   EXPECT_LT(one.done, one.total);
   RunObserver nobody;
@@ -119,15 +119,15 @@ TEST(LikelyLoops, StopsWhenItIsAskedTo) {
 
 /// What is found of the first nodes and of the others, one after the other, is what is found of all.
 TEST(LikelyLoops, CanBeLookedForInParts) {
-  const HypothesisSearchOptions matching = quick();
+  const MatchSearchOptions matching = quick();
   LoopDetectionOptions options;
   options.likely_places = 2;
   RunObserver nobody;
-  const std::vector<LoopHypothesis> all = likely_loops(ring().views, 0, by(matching, options, nobody));
+  const std::vector<LoopCandidate> all = likely_loops(ring().views, 0, by(matching, options, nobody));
   const NodeViews begin(ring().views.begin(), ring().views.begin() + 30);
-  std::vector<LoopHypothesis> parts = likely_loops(begin, 0, by(matching, options, nobody));
+  std::vector<LoopCandidate> parts = likely_loops(begin, 0, by(matching, options, nobody));
   const std::size_t num_first = parts.size();
-  for (const LoopHypothesis& loop : likely_loops(ring().views, 30, by(matching, options, nobody))) parts.push_back(loop);
+  for (const LoopCandidate& loop : likely_loops(ring().views, 30, by(matching, options, nobody))) parts.push_back(loop);
   ASSERT_EQ(parts.size(), all.size());
   EXPECT_GT(num_first, 0U);
   EXPECT_LT(num_first, all.size());
@@ -139,12 +139,12 @@ TEST(LikelyLoops, CanBeLookedForInParts) {
 }
 
 TEST(LikelyLoops, AreTheSameToTheBitForAnyNumberOfThreads) {
-  const HypothesisSearchOptions matching = quick();
+  const MatchSearchOptions matching = quick();
   RunObserver nobody;
   LoopDetectionOptions options;
   options.likely_places = 2;
-  const std::vector<LoopHypothesis> one = likely_loops(ring().views, 0, by(matching, options, nobody));
-  const std::vector<LoopHypothesis> three = likely_loops(ring().views, 0, by(matching, options, nobody, 3));
+  const std::vector<LoopCandidate> one = likely_loops(ring().views, 0, by(matching, options, nobody));
+  const std::vector<LoopCandidate> three = likely_loops(ring().views, 0, by(matching, options, nobody, 3));
   ASSERT_EQ(one.size(), three.size());
   ASSERT_FALSE(one.empty());
   for (std::size_t i = 0; i < one.size(); ++i) {
@@ -156,7 +156,7 @@ TEST(LikelyLoops, AreTheSameToTheBitForAnyNumberOfThreads) {
 }
 
 TEST(Bridges, AlignTheNodesBeforeALinkToThoseAfterIt) {
-  const HypothesisSearchOptions matching = quick();
+  const MatchSearchOptions matching = quick();
   const LoopDetectionOptions detection;
   RunObserver nobody;
   const test::Views few(ring().views.begin(), ring().views.begin() + 12);
@@ -164,19 +164,21 @@ TEST(Bridges, AlignTheNodesBeforeALinkToThoseAfterIt) {
   for (std::size_t a = 2; a <= 5; ++a) {
     for (std::size_t b = 6; b <= 9; ++b) expected.emplace(a, b);
   }
-  EXPECT_EQ(pairs_of(bridges(few, {5}, by(matching, detection, nobody))), expected);
-  EXPECT_EQ(pairs_of(bridges(few, {0}, by(matching, detection, nobody))), (std::set<Pair>{{0, 1}, {0, 2}, {0, 3}, {0, 4}}));
-  EXPECT_EQ(pairs_of(bridges(few, {10}, by(matching, detection, nobody))), (std::set<Pair>{{7, 11}, {8, 11}, {9, 11}, {10, 11}}));
-  EXPECT_TRUE(bridges(few, {}, by(matching, detection, nobody)).empty());
+  EXPECT_EQ(pairs_of(cross_edge_matches(few, {5}, by(matching, detection, nobody))), expected);
+  EXPECT_EQ(pairs_of(cross_edge_matches(few, {0}, by(matching, detection, nobody))),
+            (std::set<Pair>{{0, 1}, {0, 2}, {0, 3}, {0, 4}}));
+  EXPECT_EQ(pairs_of(cross_edge_matches(few, {10}, by(matching, detection, nobody))),
+            (std::set<Pair>{{7, 11}, {8, 11}, {9, 11}, {10, 11}}));
+  EXPECT_TRUE(cross_edge_matches(few, {}, by(matching, detection, nobody)).empty());
 }
 
 TEST(Bridges, FindTheStepAcross) {
-  const HypothesisSearchOptions matching;
+  const MatchSearchOptions matching;
   const LoopDetectionOptions detection;
   RunObserver nobody;
   const test::Views few(ring().views.begin(), ring().views.begin() + 12);
   int right = 0;
-  for (const LoopHypothesis& bridge : bridges(few, {5}, by(matching, detection, nobody))) {
+  for (const LoopCandidate& bridge : cross_edge_matches(few, {5}, by(matching, detection, nobody))) {
     const Pose2 a_from_b = inverse(ring().truth[bridge.a]) * ring().truth[bridge.b];
     if (testing::Value(bridge.a_from_b, test::IsNearPose(a_from_b, 0.10, 2 * kDegree))) ++right;
   }
@@ -184,10 +186,10 @@ TEST(Bridges, FindTheStepAcross) {
 }
 
 TEST(Bridges, StopWhenTheyAreAskedTo) {
-  const HypothesisSearchOptions matching = quick();
+  const MatchSearchOptions matching = quick();
   const LoopDetectionOptions detection;
   Patience none(0);
-  EXPECT_THROW(bridges(ring().views, {5}, by(matching, detection, none)), Interrupted);
+  EXPECT_THROW(cross_edge_matches(ring().views, {5}, by(matching, detection, none)), Interrupted);
 }
 
 }  // namespace

@@ -14,28 +14,28 @@ namespace {
 struct Walk {
   Walk() {
     for (std::size_t n = 0; n < 60; ++n) map.push_back({static_cast<double>(n), 0.0, 0.0});
-    links = test::drifting_links(map, 0.0);
-    for (ChainLink& link : links) link.probability = 0.99;
+    edges = test::drifting_links(map, 0.0);
+    for (EdgeChoices& link : edges) link.probability = 0.99;
   }
 
-  LoopHypothesis loop(std::size_t a, std::size_t b, const Pose2& a_from_b, double log_odds) const {
+  LoopCandidate loop(std::size_t a, std::size_t b, const Pose2& a_from_b, double log_odds) const {
     return {a, b, a_from_b, test::covariance_of(0.05, 1 * kDegree), log_odds};
   }
   /// As the chain has it.
-  LoopHypothesis right(std::size_t a, std::size_t b, double log_odds) const {
+  LoopCandidate right(std::size_t a, std::size_t b, double log_odds) const {
     return loop(a, b, inverse(map[a]) * map[b], log_odds);
   }
-  std::vector<LoopHypothesis> of(const std::vector<LoopHypothesis>& hypotheses) const {
-    return without_look_alikes(hypotheses, links, map);
+  std::vector<LoopCandidate> of(const std::vector<LoopCandidate>& candidates) const {
+    return without_aliases(candidates, edges, map);
   }
 
   std::vector<Pose2> map;
-  std::vector<ChainLink> links;
+  std::vector<EdgeChoices> edges;
 };
 
 TEST(LookAlikes, WhereNothingIsContradictedAllIsKept) {
   const Walk walk;
-  const std::vector<LoopHypothesis> kept = walk.of({walk.right(3, 15, 4.0), walk.loop(2, 55, {}, 1.0)});
+  const std::vector<LoopCandidate> kept = walk.of({walk.right(3, 15, 4.0), walk.loop(2, 55, {}, 1.0)});
   ASSERT_EQ(kept.size(), 2U);
   EXPECT_EQ(kept[0].log_odds, 4.0);
   EXPECT_EQ(kept[1].log_odds, 1.0) << "the chain is not sure of what is so far apart";
@@ -43,9 +43,8 @@ TEST(LookAlikes, WhereNothingIsContradictedAllIsKept) {
 
 TEST(LookAlikes, WhatTheChainContradictsIsLeftOutAndCountsAgainstTheOthersThere) {
   const Walk walk;
-  const std::vector<LoopHypothesis> kept =
-      walk.of({walk.loop(10, 22, {0.1, 0.0, 0.0}, 3.0), walk.loop(3, 52, {}, 6.0), walk.loop(8, 58, {}, 6.0),
-               walk.loop(4, 24, {20.0, 0.0, 0.0}, 2.0)});
+  const std::vector<LoopCandidate> kept = walk.of({walk.loop(10, 22, {0.1, 0.0, 0.0}, 3.0), walk.loop(3, 52, {}, 6.0),
+                                                   walk.loop(8, 58, {}, 6.0), walk.loop(4, 24, {20.0, 0.0, 0.0}, 2.0)});
   ASSERT_EQ(kept.size(), 3U);
   EXPECT_EQ(kept[0].log_odds, 6.0) << "far from both";
   EXPECT_NEAR(kept[1].log_odds, 1.0, 1e-12) << "two nodes from the one";
@@ -59,15 +58,15 @@ TEST(LookAlikes, ATurnIsContradictedAsWell) {
 }
 
 TEST(LookAlikes, ADoubtfulLinkOrOneThatSlidesContradictsNothing) {
-  const LoopHypothesis off = Walk().loop(10, 22, {}, 3.0);
+  const LoopCandidate off = Walk().loop(10, 22, {}, 3.0);
   Walk doubtful;
-  doubtful.links[15].probability = 0.9;
+  doubtful.edges[15].probability = 0.9;
   EXPECT_EQ(doubtful.of({off}).size(), 1U);
   Walk sliding;
-  sliding.links[15].alternatives.front().covariance(0, 0) = 9.0;
+  sliding.edges[15].candidates.front().covariance(0, 0) = 9.0;
   EXPECT_EQ(sliding.of({off}).size(), 1U);
   Walk gap;
-  gap.links[15] = {};
+  gap.edges[15] = {};
   EXPECT_EQ(gap.of({off}).size(), 1U);
 }
 
@@ -75,7 +74,7 @@ TEST(LookAlikes, NeedsAMapOfTheChain) {
   Walk walk;
   walk.map.pop_back();
   EXPECT_THROW(walk.of({}), std::invalid_argument);
-  EXPECT_TRUE(without_look_alikes({}, {}, {}).empty());
+  EXPECT_TRUE(without_aliases({}, {}, {}).empty());
 }
 
 }  // namespace

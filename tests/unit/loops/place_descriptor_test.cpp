@@ -36,64 +36,65 @@ ScanView moved(const ScanView& view, const Pose2& other_from_robot) {
   return view_of_points(points);
 }
 
-PlaceSignature random_signature(std::mt19937& rng) {
+PlaceDescriptor random_signature(std::mt19937& rng) {
   std::uniform_real_distribution<float> unit(0.0F, 1.0F);
-  PlaceSignature signature;
+  PlaceDescriptor descriptor;
   float squares = 0.0F;
-  for (float& value : signature) {
+  for (float& value : descriptor) {
     value = unit(rng);
     squares += value * value;
   }
-  for (float& value : signature) value /= std::sqrt(squares);
-  return signature;
+  for (float& value : descriptor) value /= std::sqrt(squares);
+  return descriptor;
 }
 
-TEST(PlaceSignature, OfTwoPointsHasTwoEqualEntriesThatAnyTurnOrShiftKeeps) {
+TEST(PlaceDescriptor, OfTwoPointsHasTwoEqualEntriesThatAnyTurnOrShiftKeeps) {
   const ScanView view = view_of_points({point(0.0, 0.0, 3.0), point(1.0, 0.0, 88.0)});
-  const PlaceSignature signature = place_signature(view);
-  EXPECT_EQ(std::count(signature.begin(), signature.end(), std::sqrt(0.5F)), 2);
-  EXPECT_EQ(std::count(signature.begin(), signature.end(), 0.0F), static_cast<long>(kSignatureBins - 2));
+  const PlaceDescriptor descriptor = place_descriptor(view);
+  EXPECT_EQ(std::count(descriptor.begin(), descriptor.end(), std::sqrt(0.5F)), 2);
+  EXPECT_EQ(std::count(descriptor.begin(), descriptor.end(), 0.0F), static_cast<long>(kDescriptorBins - 2));
   std::mt19937 rng(1);
   for (int round = 0; round < 100; ++round) {
-    EXPECT_EQ(place_signature(moved(view, test::random_pose(rng, 50.0, kPi))), signature);
+    EXPECT_EQ(place_descriptor(moved(view, test::random_pose(rng, 50.0, kPi))), descriptor);
   }
 }
 
-TEST(PlaceSignature, TellsDistancesTurnsAndSidesApart) {
+TEST(PlaceDescriptor, TellsDistancesTurnsAndSidesApart) {
   const auto of_pair = [](const ShapePoint& other) {
-    return place_signature(view_of_points({point(0.0, 0.0, 0.0), other}));
+    return place_descriptor(view_of_points({point(0.0, 0.0, 0.0), other}));
   };
-  const PlaceSignature signature = of_pair(point(2.0, 0.0, 90.0));
-  EXPECT_NEAR(likeness(signature, of_pair(point(2.05, 0.05, 95.0))), 1.0, 1e-6) << "small errors do no harm";
-  EXPECT_EQ(likeness(signature, of_pair(point(4.0, 0.0, 90.0))), 0.0) << "farther";
-  EXPECT_EQ(likeness(signature, of_pair(point(2.0, 0.0, -90.0))), 0.0) << "turned the other way: a mirror image";
-  EXPECT_EQ(likeness(signature, of_pair(point(0.0, 2.0, 90.0))), 0.0) << "on another side";
+  const PlaceDescriptor descriptor = of_pair(point(2.0, 0.0, 90.0));
+  EXPECT_NEAR(similarity(descriptor, of_pair(point(2.05, 0.05, 95.0))), 1.0, 1e-6) << "small errors do no harm";
+  EXPECT_EQ(similarity(descriptor, of_pair(point(4.0, 0.0, 90.0))), 0.0) << "farther";
+  EXPECT_EQ(similarity(descriptor, of_pair(point(2.0, 0.0, -90.0))), 0.0) << "turned the other way: a mirror image";
+  EXPECT_EQ(similarity(descriptor, of_pair(point(0.0, 2.0, 90.0))), 0.0) << "on another side";
 }
 
-TEST(PlaceSignature, OfRealScansIsTheSameInAnyFrame) {
+TEST(PlaceDescriptor, OfRealScansIsTheSameInAnyFrame) {
   std::mt19937 rng(2);
   for (unsigned seed = 1; seed <= 10; ++seed) {
     const ScanView view = test::view_from(test::strange_place(seed), {});
-    const PlaceSignature signature = place_signature(view);
+    const PlaceDescriptor descriptor = place_descriptor(view);
     for (int round = 0; round < 5; ++round) {
       // Some pairs of points lie on a border between two bins to the last digit.
-      EXPECT_GT(likeness(place_signature(moved(view, test::random_pose(rng, 20.0, kPi))), signature), 0.995) << seed;
+      EXPECT_GT(similarity(place_descriptor(moved(view, test::random_pose(rng, 20.0, kPi))), descriptor), 0.995)
+          << seed;
     }
   }
 }
 
-TEST(PlaceSignature, APlaceLooksMoreLikeItselfThanLikeAnyOther) {
+TEST(PlaceDescriptor, APlaceLooksMoreLikeItselfThanLikeAnyOther) {
   constexpr unsigned kPlaces = 20;
-  std::vector<PlaceSignature> known;
+  std::vector<PlaceDescriptor> known;
   for (unsigned seed = 1; seed <= kPlaces; ++seed) {
-    known.push_back(place_signature(test::view_from(test::strange_place(seed), {})));
+    known.push_back(place_descriptor(test::view_from(test::strange_place(seed), {})));
   }
   for (unsigned seed = 1; seed <= kPlaces; ++seed) {
     const Pose2 nearby{0.15, -0.1, 2.0 + seed};
-    const PlaceSignature again =
-        place_signature(test::view_from(test::strange_place(seed), nearby, test::full_circle(), 100 + seed));
+    const PlaceDescriptor again =
+        place_descriptor(test::view_from(test::strange_place(seed), nearby, test::full_circle(), 100 + seed));
     std::vector<double> alike;
-    for (const PlaceSignature& other : known) alike.push_back(likeness(again, other));
+    for (const PlaceDescriptor& other : known) alike.push_back(similarity(again, other));
     const auto best = std::max_element(alike.begin(), alike.end());
     EXPECT_EQ(best - alike.begin(), static_cast<long>(seed) - 1);
     EXPECT_GT(*best, 0.9);
@@ -101,40 +102,40 @@ TEST(PlaceSignature, APlaceLooksMoreLikeItselfThanLikeAnyOther) {
   }
 }
 
-TEST(PlaceSignature, HasLengthOneAndLikenessIsBetweenNoneAndOne) {
-  std::vector<PlaceSignature> signatures;
+TEST(PlaceDescriptor, HasLengthOneAndLikenessIsBetweenNoneAndOne) {
+  std::vector<PlaceDescriptor> descriptors;
   for (unsigned seed = 1; seed <= 6; ++seed) {
-    signatures.push_back(place_signature(test::view_from(test::strange_place(seed), {})));
+    descriptors.push_back(place_descriptor(test::view_from(test::strange_place(seed), {})));
   }
-  signatures.push_back(place_signature(test::view_from(test::bare_corridor(), {})));
-  signatures.push_back(place_signature(test::view_from(test::round_room(), {})));
-  for (const PlaceSignature& a : signatures) {
-    EXPECT_NEAR(likeness(a, a), 1.0, 1e-5);
-    for (const PlaceSignature& b : signatures) {
-      EXPECT_GE(likeness(a, b), 0.0);
-      EXPECT_LE(likeness(a, b), 1.0 + 1e-5);
-      EXPECT_EQ(likeness(a, b), likeness(b, a));
+  descriptors.push_back(place_descriptor(test::view_from(test::bare_corridor(), {})));
+  descriptors.push_back(place_descriptor(test::view_from(test::round_room(), {})));
+  for (const PlaceDescriptor& a : descriptors) {
+    EXPECT_NEAR(similarity(a, a), 1.0, 1e-5);
+    for (const PlaceDescriptor& b : descriptors) {
+      EXPECT_GE(similarity(a, b), 0.0);
+      EXPECT_LE(similarity(a, b), 1.0 + 1e-5);
+      EXPECT_EQ(similarity(a, b), similarity(b, a));
     }
   }
 }
 
-TEST(PlaceSignature, OfNothingIsLikeNothing) {
-  const PlaceSignature nothing = place_signature({});
-  EXPECT_EQ(nothing, PlaceSignature{});
-  EXPECT_EQ(place_signature(view_of_points({point(1.0, 2.0, 3.0)})), PlaceSignature{}) << "no pair";
-  EXPECT_EQ(place_signature(view_of_points({point(0.0, 0.0, 0.0), point(100.0, 0.0, 0.0)})), PlaceSignature{});
-  EXPECT_EQ(likeness(nothing, place_signature(test::view_from(test::uneven_room(), {}))), 0.0);
+TEST(PlaceDescriptor, OfNothingIsLikeNothing) {
+  const PlaceDescriptor nothing = place_descriptor({});
+  EXPECT_EQ(nothing, PlaceDescriptor{});
+  EXPECT_EQ(place_descriptor(view_of_points({point(1.0, 2.0, 3.0)})), PlaceDescriptor{}) << "no pair";
+  EXPECT_EQ(place_descriptor(view_of_points({point(0.0, 0.0, 0.0), point(100.0, 0.0, 0.0)})), PlaceDescriptor{});
+  EXPECT_EQ(similarity(nothing, place_descriptor(test::view_from(test::uneven_room(), {}))), 0.0);
 }
 
 /// All of them, sorted; of equally alike ones the earlier first.
-std::vector<LikelyPlace> by_full_sort(const std::vector<PlaceSignature>& signatures, std::size_t node, std::size_t end,
-                                      std::size_t count) {
+std::vector<LikelyPlace> by_full_sort(const std::vector<PlaceDescriptor>& descriptors, std::size_t node,
+                                      std::size_t end, std::size_t count) {
   std::vector<LikelyPlace> places;
   for (std::size_t other = 0; other < end; ++other) {
-    places.push_back({other, likeness(signatures[node], signatures[other])});
+    places.push_back({other, similarity(descriptors[node], descriptors[other])});
   }
   std::stable_sort(places.begin(), places.end(),
-                   [](const LikelyPlace& a, const LikelyPlace& b) { return a.likeness > b.likeness; });
+                   [](const LikelyPlace& a, const LikelyPlace& b) { return a.similarity > b.similarity; });
   std::vector<LikelyPlace> kept;
   std::vector<bool> taken(end + 2, false);  // shifted by one
   for (const LikelyPlace& place : places) {
@@ -150,23 +151,23 @@ std::vector<LikelyPlace> by_full_sort(const std::vector<PlaceSignature>& signatu
 TEST(PlaceIndex, FindsTheFirstOfAFullSortAndOfNeighboursTheBetter) {
   std::mt19937 rng(3);
   constexpr std::size_t kCount = 60;
-  std::vector<PlaceSignature> signatures;
+  std::vector<PlaceDescriptor> descriptors;
   PlaceIndex index;
   for (std::size_t i = 0; i < kCount; ++i) {
     const bool seen_before = i > 10 && i % 4 == 0;  // ties
-    signatures.push_back(seen_before ? signatures[i / 3] : random_signature(rng));
-    index.add(signatures.back());
+    descriptors.push_back(seen_before ? descriptors[i / 3] : random_signature(rng));
+    index.add(descriptors.back());
   }
   ASSERT_EQ(index.size(), kCount);
   for (std::size_t node = 0; node < kCount; ++node) {
     for (const std::size_t count : {0U, 1U, 7U, 1000U}) {
       const std::size_t end = node - std::min<std::size_t>(node, node % 5);
       const std::vector<LikelyPlace> found = index.most_alike(node, end, count);
-      const std::vector<LikelyPlace> expected = by_full_sort(signatures, node, end, count);
+      const std::vector<LikelyPlace> expected = by_full_sort(descriptors, node, end, count);
       ASSERT_EQ(found.size(), expected.size());
       for (std::size_t k = 0; k < found.size(); ++k) {
         EXPECT_EQ(found[k].node, expected[k].node);
-        EXPECT_EQ(found[k].likeness, expected[k].likeness);
+        EXPECT_EQ(found[k].similarity, expected[k].similarity);
       }
     }
   }

@@ -32,8 +32,8 @@ Log log_of(const std::vector<Pose2>& poses, const test::Scanner& scanner = test:
   std::mt19937 rng(7);
   Log log;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    log.positions.push_back(test::scan_of(world, poses[i], scanner, rng));
-    log.positions.back().timestamp_s = 100.0 + static_cast<double>(i);
+    log.scans.push_back(test::scan_of(world, poses[i], scanner, rng));
+    log.scans.back().timestamp_s = 100.0 + static_cast<double>(i);
   }
   return log;
 }
@@ -52,10 +52,10 @@ MappingOptions without_loops(MappingOptions options = {}) {
 /// A coarser search, for tests that do not ask for the right pose.
 MappingOptions quick() {
   MappingOptions options;
-  options.robust.matcher.search.hypotheses.rotation_peaks = 3;
-  options.robust.matcher.search.hypotheses.refined = 4;
-  options.robust.matcher.search.hypotheses.kept = 3;
-  options.robust.matcher.search.hypotheses.all_rotations_below = -100.0;
+  options.robust.matcher.search.candidates.rotation_peaks = 3;
+  options.robust.matcher.search.candidates.refined = 4;
+  options.robust.matcher.search.candidates.kept = 3;
+  options.robust.matcher.search.candidates.all_rotations_below = -100.0;
   options.robust.matcher.search.voting.peaks = 6;
   options.robust.loop_detection.likely_places = 3;
   options.robust.refinement.rounds = 1;
@@ -69,9 +69,9 @@ MappingOptions in_doubt() {
   return options;
 }
 
-void expect_same_bits(const PositionResult& a, const PositionResult& b) {
-  EXPECT_EQ(a.fragment, b.fragment);
-  EXPECT_EQ(a.starts_fragment, b.starts_fragment);
+void expect_same_bits(const ScanResult& a, const ScanResult& b) {
+  EXPECT_EQ(a.component, b.component);
+  EXPECT_EQ(a.starts_component, b.starts_component);
   EXPECT_EQ(a.reason, b.reason);
   EXPECT_EQ(a.alignment.status, b.alignment.status);
   EXPECT_THAT(a.alignment.ref_from_query, HasSameBits(b.alignment.ref_from_query));
@@ -86,71 +86,71 @@ void expect_same_bits(const PositionResult& a, const PositionResult& b) {
 }
 
 void expect_same_bits(const MapResult& a, const MapResult& b) {
-  ASSERT_EQ(a.positions.size(), b.positions.size());
-  for (std::size_t i = 0; i < a.positions.size(); ++i) expect_same_bits(a.positions[i], b.positions[i]);
+  ASSERT_EQ(a.scans.size(), b.scans.size());
+  for (std::size_t i = 0; i < a.scans.size(); ++i) expect_same_bits(a.scans[i], b.scans[i]);
   ASSERT_EQ(a.placed().size(), b.placed().size());
   for (std::size_t i = 0; i < a.placed().size(); ++i) {
     EXPECT_THAT(a.placed()[i].map_from_robot, HasSameBits(b.placed()[i].map_from_robot)) << i;
   }
 }
 
-TEST(RobustChain, FollowsAKnownWalkWithAnyHeading) {
+TEST(FrontEnd, FollowsAKnownWalkWithAnyHeading) {
   for (const std::size_t count : {kBlock - 1, kBlock, kBlock + 1, 2 * kBlock + 1}) {
     const std::vector<Pose2> truth = walk(count);
     const MapResult result = mapped(log_of(truth), without_loops());
     ASSERT_EQ(result.placed().size(), count);
-    EXPECT_EQ(result.fragments.size(), 1U);
+    EXPECT_EQ(result.components.size(), 1U);
     for (std::size_t i = 1; i < count; ++i) {
-      EXPECT_EQ(result.placed()[i].position_index, i);
+      EXPECT_EQ(result.placed()[i].scan_index, i);
       const Pose2 step = inverse(truth[i - 1]) * truth[i];
-      EXPECT_THAT(result.positions[i].alignment.ref_from_query, IsNearPose(step, 0.10, 2 * kDegree)) << i;
-      const Pose2 map_from_robot = result.placed()[i - 1].map_from_robot * result.positions[i].alignment.ref_from_query;
+      EXPECT_THAT(result.scans[i].alignment.ref_from_query, IsNearPose(step, 0.10, 2 * kDegree)) << i;
+      const Pose2 map_from_robot = result.placed()[i - 1].map_from_robot * result.scans[i].alignment.ref_from_query;
       EXPECT_THAT(result.placed()[i].map_from_robot, HasSameBits(map_from_robot)) << "the alignments in a row";
     }
   }
 }
 
-TEST(RobustChain, OfNothingAndOfBlindScansIsNoMap) {
-  EXPECT_TRUE(mapped({}).positions.empty());
+TEST(FrontEnd, OfNothingAndOfBlindScansIsNoMap) {
+  EXPECT_TRUE(mapped({}).scans.empty());
   Log log;
-  log.positions.assign(kBlock + 2, test::blind_position());
+  log.scans.assign(kBlock + 2, test::blind_position());
   const MapResult result = mapped(log);
-  EXPECT_TRUE(result.fragments.empty());
-  EXPECT_EQ(result.largest_fragment, -1);
-  ASSERT_EQ(result.positions.size(), kBlock + 2);
-  for (const PositionResult& position : result.positions) EXPECT_FALSE(position.reason.empty());
+  EXPECT_TRUE(result.components.empty());
+  EXPECT_EQ(result.largest_component, -1);
+  ASSERT_EQ(result.scans.size(), kBlock + 2);
+  for (const ScanResult& position : result.scans) EXPECT_FALSE(position.reason.empty());
 }
 
-TEST(RobustChain, OfOneScanIsOneFragmentOfOneAtTheOrigin) {
+TEST(FrontEnd, OfOneScanIsOneFragmentOfOneAtTheOrigin) {
   const MapResult result = mapped(log_of({{0.3, 0.2, 0.5}}));
   ASSERT_EQ(result.placed().size(), 1U);
   EXPECT_THAT(result.placed()[0].map_from_robot, HasSameBits(Pose2{}));
-  EXPECT_TRUE(result.positions[0].starts_fragment);
-  EXPECT_TRUE(result.positions[0].reason.empty());
+  EXPECT_TRUE(result.scans[0].starts_component);
+  EXPECT_TRUE(result.scans[0].reason.empty());
 }
 
-TEST(RobustChain, ABlindScanIsReportedAndSplitsNothing) {
+TEST(FrontEnd, ABlindScanIsReportedAndSplitsNothing) {
   const std::vector<Pose2> truth = walk(6);
   const MapResult whole = mapped(log_of(truth));
   Log log = log_of(truth);
-  log.positions.insert(log.positions.begin() + 3, test::blind_position());
+  log.scans.insert(log.scans.begin() + 3, test::blind_position());
   const MapResult result = mapped(log);
-  EXPECT_EQ(result.fragments.size(), 1U);
+  EXPECT_EQ(result.components.size(), 1U);
   ASSERT_EQ(result.placed().size(), 6U);
   for (std::size_t i = 0; i < 6; ++i) {
-    EXPECT_EQ(result.placed()[i].position_index, i < 3 ? i : i + 1);
+    EXPECT_EQ(result.placed()[i].scan_index, i < 3 ? i : i + 1);
     EXPECT_THAT(result.placed()[i].map_from_robot, HasSameBits(whole.placed()[i].map_from_robot));
   }
-  const PositionResult& blind = result.positions[3];
-  EXPECT_EQ(blind.alignment.status, AlignStatus::kNoShape);
-  EXPECT_EQ(blind.fragment, -1);
-  EXPECT_FALSE(blind.starts_fragment);
+  const ScanResult& blind = result.scans[3];
+  EXPECT_EQ(blind.alignment.status, MatchStatus::kNoShape);
+  EXPECT_EQ(blind.component, -1);
+  EXPECT_FALSE(blind.starts_component);
   EXPECT_EQ(blind.reason, "only 0 shape points, 10 are needed");
   EXPECT_EQ(result.why_not_in_map(blind), blind.reason);
-  EXPECT_EQ(result.why_not_in_map(result.positions[4]), "");
+  EXPECT_EQ(result.why_not_in_map(result.scans[4]), "");
 }
 
-TEST(RobustChain, IsTheSameToTheBitForAnyNumberOfThreads) {
+TEST(FrontEnd, IsTheSameToTheBitForAnyNumberOfThreads) {
   const Log log = log_of(walk(kBlock + 8));
   for (MappingOptions options : {quick(), in_doubt()}) {
     const MapResult one = mapped(log, options);
@@ -162,22 +162,22 @@ TEST(RobustChain, IsTheSameToTheBitForAnyNumberOfThreads) {
 }
 
 /// Blind positions in front shift where the blocks begin.
-TEST(RobustChain, BordersOfBlocksChangeNothing) {
+TEST(FrontEnd, BordersOfBlocksChangeNothing) {
   const Log log = log_of(walk(kBlock + 8));
   for (const MappingOptions& options : {quick(), in_doubt()}) {
     const MapResult result = mapped(log, options);
     for (const std::size_t shift : {std::size_t{1}, kBlock / 2, kBlock - 1}) {
       Log shifted = log;
-      shifted.positions.insert(shifted.positions.begin(), shift, test::blind_position());
+      shifted.scans.insert(shifted.scans.begin(), shift, test::blind_position());
       MapResult later = mapped(shifted, options);
-      later.positions.erase(later.positions.begin(), later.positions.begin() + static_cast<std::ptrdiff_t>(shift));
+      later.scans.erase(later.scans.begin(), later.scans.begin() + static_cast<std::ptrdiff_t>(shift));
       expect_same_bits(later, result);
     }
   }
 }
 
-TEST(RobustChain, PosesThatAPositionMayHaveAreApart) {
-  for (const PositionResult& position : mapped(log_of(walk(12)), in_doubt()).positions) {
+TEST(FrontEnd, PosesThatAPositionMayHaveAreApart) {
+  for (const ScanResult& position : mapped(log_of(walk(12)), in_doubt()).scans) {
     const std::vector<RankedPose>& ranked = position.alignment.ranked;
     for (std::size_t i = 0; i < ranked.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
@@ -185,7 +185,7 @@ TEST(RobustChain, PosesThatAPositionMayHaveAreApart) {
         const Pose2 b = ranked[k].ref_from_query;
         EXPECT_TRUE((a.translation() - b.translation()).norm() > 0.05 ||
                     angle_between(a.theta_rad, b.theta_rad) > kDegree)
-            << position.position_index;
+            << position.scan_index;
       }
     }
   }
@@ -207,7 +207,7 @@ struct Stopper : RunObserver {
   bool is_chain = false;
 };
 
-TEST(RobustChain, TellsTheObserverUntilAllIsDone) {
+TEST(FrontEnd, TellsTheObserverUntilAllIsDone) {
   Stopper watcher(1000);
   const MapResult result = map_log(log_of(walk(kBlock + 3)), without_loops(), watcher);
   EXPECT_EQ(watcher.done, kBlock + 3);
@@ -215,80 +215,80 @@ TEST(RobustChain, TellsTheObserverUntilAllIsDone) {
   EXPECT_FALSE(result.interrupted);
 }
 
-TEST(RobustChain, StoppedItIsTheMapOfWhatItHasSeen) {
+TEST(FrontEnd, StoppedItIsTheMapOfWhatItHasSeen) {
   const Log log = log_of(walk(2 * kBlock + 5));
   for (const std::size_t stop_at : {1U, 2U, 3U}) {
     Stopper watcher(stop_at);
     const MapResult result = map_log(log, quick(), watcher);
     EXPECT_TRUE(result.interrupted);
-    ASSERT_LT(result.positions.size(), log.positions.size());
-    ASSERT_EQ(result.positions.size(), watcher.done);
+    ASSERT_LT(result.scans.size(), log.scans.size());
+    ASSERT_EQ(result.scans.size(), watcher.done);
     Log seen = log;
-    seen.positions.resize(watcher.done);
+    seen.scans.resize(watcher.done);
     expect_same_bits(result, mapped(seen, quick()));
   }
 }
 
-TEST(RobustChain, SplitsWhereItIsToldToAndSaysWhy) {
+TEST(FrontEnd, SplitsWhereItIsToldToAndSaysWhy) {
   const Log log = log_of(walk(5));
   MappingOptions options;
   options.robust.front_end.split_below = 1.0;
   const MapResult result = mapped(log, options);
-  EXPECT_EQ(result.fragments.size(), 5U);
+  EXPECT_EQ(result.components.size(), 5U);
   EXPECT_EQ(result.placed().size(), 1U);
   for (std::size_t i = 1; i < 5; ++i) {
-    const PositionResult& position = result.positions[i];
-    EXPECT_EQ(position.fragment, static_cast<int>(i));
-    EXPECT_TRUE(position.starts_fragment);
+    const ScanResult& position = result.scans[i];
+    EXPECT_EQ(position.component, static_cast<int>(i));
+    EXPECT_TRUE(position.starts_component);
     EXPECT_TRUE(position.alignment.has_pose()) << "what was found is told all the same";
     EXPECT_FALSE(position.reason.empty()) << "a split has a reason";
-    EXPECT_THAT(result.fragments[i].positions[0].map_from_robot, HasSameBits(Pose2{}));
+    EXPECT_THAT(result.components[i].scans[0].map_from_robot, HasSameBits(Pose2{}));
   }
   options.robust.front_end.split_below = 0.0;
-  EXPECT_EQ(mapped(log, options).fragments.size(), 1U);
+  EXPECT_EQ(mapped(log, options).components.size(), 1U);
 }
 
-TEST(RobustChain, RefusedAlignmentsKeepTheMapInOnePieceAndAreReported) {
+TEST(FrontEnd, RefusedAlignmentsKeepTheMapInOnePieceAndAreReported) {
   MappingOptions options;
   options.robust.matcher.confidence.min_agree = 1.0;
   const MapResult result = mapped(log_of(walk(4)), options);
-  EXPECT_EQ(result.fragments.size(), 1U);
+  EXPECT_EQ(result.components.size(), 1U);
   EXPECT_EQ(result.placed().size(), 4U);
   for (std::size_t i = 1; i < 4; ++i) {
-    EXPECT_EQ(result.positions[i].alignment.status, AlignStatus::kTooLittleOverlap);
-    EXPECT_EQ(result.positions[i].reason, result.positions[i].alignment.reason);
-    EXPECT_FALSE(result.positions[i].reason.empty());
+    EXPECT_EQ(result.scans[i].alignment.status, MatchStatus::kTooLittleOverlap);
+    EXPECT_EQ(result.scans[i].reason, result.scans[i].alignment.reason);
+    EXPECT_FALSE(result.scans[i].reason.empty());
   }
 }
 
-TEST(RobustChain, ExtremeOptionsOfTheChainStillMakeAMap) {
+TEST(FrontEnd, ExtremeOptionsOfTheChainStillMakeAMap) {
   const Log log = log_of(walk(kBlock + 2));
   for (const int more_references : {0, 1, 10}) {
-    for (const double companion_weight : {0.0, 10.0}) {
+    for (const double three_scan_weight : {0.0, 10.0}) {
       MappingOptions options = in_doubt();
       options.robust.front_end.more_references = more_references;
-      options.robust.front_end.companion_weight = companion_weight;
-      options.robust.matcher.search.hypotheses.kept = 2;
+      options.robust.front_end.three_scan_weight = three_scan_weight;
+      options.robust.matcher.search.candidates.kept = 2;
       const MapResult result = mapped(log, options);
-      EXPECT_EQ(result.positions.size(), log.positions.size());
-      EXPECT_EQ(result.placed().size(), log.positions.size());
+      EXPECT_EQ(result.scans.size(), log.scans.size());
+      EXPECT_EQ(result.placed().size(), log.scans.size());
     }
   }
 }
 
-TEST(RobustChain, NeverLooksAtTheReferencePosesAndHasNoCorrections) {
+TEST(FrontEnd, NeverLooksAtTheReferencePosesAndHasNoCorrections) {
   Log log = log_of(walk(4));
   const MapResult without = mapped(log);
-  for (Position& position : log.positions) position.reference_pose = Pose2{99.0, -99.0, 1.0};
+  for (Scan& position : log.scans) position.reference_pose = Pose2{99.0, -99.0, 1.0};
   const MapResult with = mapped(log);
   expect_same_bits(with, without);
-  for (const PlacedPosition& placed : with.placed()) {
-    EXPECT_THAT(placed.robot_from_sub_scan, Each(Pose2{}));
-    EXPECT_EQ(placed.robot_from_sub_scan.size(), 1U);
+  for (const PlacedScan& placed : with.placed()) {
+    EXPECT_THAT(placed.robot_from_sweep, Each(Pose2{}));
+    EXPECT_EQ(placed.robot_from_sweep.size(), 1U);
   }
 }
 
-TEST(RobustChain, CountsTheSecondsOfItsStages) {
+TEST(FrontEnd, CountsTheSecondsOfItsStages) {
   const MapResult result = mapped(log_of(walk(3)));
   EXPECT_GT(result.times.shape_s, 0.0);
   EXPECT_GT(result.times.align_s, 0.0);
@@ -296,17 +296,17 @@ TEST(RobustChain, CountsTheSecondsOfItsStages) {
 }
 
 /// A room with a bare corridor: what was learned in the one tells how far the robot goes in the other.
-TEST(RobustChain, GoesAlongABareCorridorAsFarAsItUsuallyDoes) {
+TEST(FrontEnd, GoesAlongABareCorridorAsFarAsItUsuallyDoes) {
   test::World world = test::bare_corridor();
   for (int k = 0; k < 14; ++k) test::add_box(world, {0.9 * k, k % 2 == 0 ? 0.9 : -0.9, 0.3 * k}, 0.2, 0.15);
   Log log;
   std::mt19937 rng(5);
   std::vector<Pose2> truth;
   for (int k = 0; k < 40; ++k) truth.push_back({0.7 * k, 0.1 * std::sin(1.3 * k), 0.1 * std::sin(2.1 * k)});
-  for (const Pose2& pose : truth) log.positions.push_back(test::scan_of(world, pose, test::half_circle(), rng));
+  for (const Pose2& pose : truth) log.scans.push_back(test::scan_of(world, pose, test::half_circle(), rng));
   const MapResult result = mapped(log, without_loops());
-  ASSERT_EQ(result.fragments.size(), 1U);
-  const std::vector<PlacedPosition>& placed = result.fragments[0].positions;
+  ASSERT_EQ(result.components.size(), 1U);
+  const std::vector<PlacedScan>& placed = result.components[0].scans;
   ASSERT_EQ(placed.size(), truth.size());
   for (std::size_t k = 1; k < placed.size(); ++k) {
     const Pose2 step = inverse(placed[k - 1].map_from_robot) * placed[k].map_from_robot;
@@ -315,14 +315,14 @@ TEST(RobustChain, GoesAlongABareCorridorAsFarAsItUsuallyDoes) {
 }
 
 /// Views are let go meanwhile, and nothing shows it.
-TEST(RobustChain, OfMoreKeyframesThanAreKeptWithoutLoopsIsOne) {
+TEST(FrontEnd, OfMoreKeyframesThanAreKeptWithoutLoopsIsOne) {
   MappingOptions options = without_loops(quick());
   options.robust.keyframes.step_m = 0.0;
   options.robust.keyframes.settle_at = 70;
   const Log log = log_of(walk(200));
   const MapResult result = mapped(log, options);
-  ASSERT_EQ(result.fragments.size(), 1U);
-  EXPECT_EQ(result.fragments[0].positions.size(), 200U);
+  ASSERT_EQ(result.components.size(), 1U);
+  EXPECT_EQ(result.components[0].scans.size(), 200U);
 }
 
 }  // namespace

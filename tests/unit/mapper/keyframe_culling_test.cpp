@@ -26,47 +26,47 @@ MapResult mapped(const Log& log, const MappingOptions& options) {
 }
 
 std::size_t num_keyframes(const MapResult& result) {
-  return static_cast<std::size_t>(std::count_if(result.positions.begin(), result.positions.end(),
-                                                [](const PositionResult& p) { return p.is_keyframe; }));
+  return static_cast<std::size_t>(
+      std::count_if(result.scans.begin(), result.scans.end(), [](const ScanResult& p) { return p.is_keyframe; }));
 }
 
 std::vector<Pose2> poses_of(const MapResult& result) {
   std::vector<Pose2> poses;
-  for (const PlacedPosition& placed : result.placed()) poses.push_back(placed.map_from_robot);
+  for (const PlacedScan& placed : result.placed()) poses.push_back(placed.map_from_robot);
   return poses;
 }
 
-TEST(StandIns, AreEarlierKeyframesAtTheSamePlace) {
+TEST(RedundantKeyframes, AreEarlierKeyframesAtTheSamePlace) {
   const Laps& laps = two_laps();
   const KnownChain known(laps);
-  const auto stand_ins = find_stand_ins(known.chain, known.map, quick().robust, 1).of_keyframe;
-  ASSERT_EQ(stand_ins.size(), laps.truth.size());
+  const auto redundant = find_redundant_keyframes(known.chain, known.map, quick().robust, 1).of_keyframe;
+  ASSERT_EQ(redundant.size(), laps.truth.size());
   std::size_t found = 0;
-  for (std::size_t b = 0; b < stand_ins.size(); ++b) {
-    if (!stand_ins[b]) continue;
+  for (std::size_t b = 0; b < redundant.size(); ++b) {
+    if (!redundant[b]) continue;
     ++found;
-    const std::size_t a = stand_ins[b]->keyframe;
+    const std::size_t a = redundant[b]->keyframe;
     EXPECT_LT(a, b);
-    EXPECT_FALSE(stand_ins[a]) << "one that goes itself stands for another";
+    EXPECT_FALSE(redundant[a]) << "one that goes itself stands for another";
     const Pose2 a_from_b = inverse(laps.truth[a]) * laps.truth[b];
     EXPECT_LT(a_from_b.translation().norm(), 0.5);
-    EXPECT_THAT(stand_ins[b]->pose.ref_from_query, test::IsNearPose(a_from_b, 0.06, 1.5 * kDegree));
-    EXPECT_LT(b + kKeyframesInUse, stand_ins.size());
+    EXPECT_THAT(redundant[b]->pose.ref_from_query, test::IsNearPose(a_from_b, 0.06, 1.5 * kDegree));
+    EXPECT_LT(b + kKeyframesInUse, redundant.size());
   }
   EXPECT_GT(found, test::kRingLap / 4);  // the robot sways by more than 20 degrees
 }
 
-TEST(StandIns, TellARightMapFromOneThatIsFolded) {
+TEST(RedundantKeyframes, TellARightMapFromOneThatIsFolded) {
   const Laps& laps = two_laps();
   const KnownChain right(laps);
-  const StandIns of_right = find_stand_ins(right.chain, right.map, quick().robust, 1);
+  const RedundantKeyframes of_right = find_redundant_keyframes(right.chain, right.map, quick().robust, 1);
   EXPECT_GT(of_right.num_again, test::kRingLap / 4);
   EXPECT_TRUE(of_right.are_of_right_map());
   KnownChain folded(laps);
   for (std::size_t b = test::kRingLap; b < laps.truth.size(); ++b) {  // the second lap, a bit further round
     folded.map.map_from_keyframe[b] = laps.truth[b - 5];
   }
-  const StandIns of_folded = find_stand_ins(folded.chain, folded.map, quick().robust, 1);
+  const RedundantKeyframes of_folded = find_redundant_keyframes(folded.chain, folded.map, quick().robust, 1);
   EXPECT_GT(of_folded.num_again, test::kRingLap / 4);
   EXPECT_FALSE(of_folded.are_of_right_map());
   EXPECT_THAT(of_right.is_in_doubt, testing::Each(false));
@@ -74,72 +74,73 @@ TEST(StandIns, TellARightMapFromOneThatIsFolded) {
   for (std::size_t b = 0; b < laps.truth.size(); ++b) {
     EXPECT_FALSE(of_folded.is_in_doubt[b] && of_folded.of_keyframe[b]) << b;
   }
-  EXPECT_TRUE(StandIns().are_of_right_map());
+  EXPECT_TRUE(RedundantKeyframes().are_of_right_map());
 }
 
-TEST(StandIns, AreNotForKeyframesInDoubt) {
+TEST(RedundantKeyframes, AreNotForKeyframesInDoubt) {
   const Laps& laps = two_laps();
   KnownChain known(laps);
-  const auto all = find_stand_ins(known.chain, known.map, quick().robust, 1).of_keyframe;
-  const auto first = std::find_if(all.begin(), all.end(), [](const auto& stand_in) { return stand_in.has_value(); });
+  const auto all = find_redundant_keyframes(known.chain, known.map, quick().robust, 1).of_keyframe;
+  const auto first =
+      std::find_if(all.begin(), all.end(), [](const auto& replacement) { return replacement.has_value(); });
   ASSERT_NE(first, all.end());
   const auto b = static_cast<std::size_t>(first - all.begin());
-  known.map.held_by_loops[b] = false;
-  known.chain.links[b].choice.margin = 0.01;  // another place fits as well
-  ASSERT_LT(link_probability(known.chain.links[b]), 0.6);
-  EXPECT_FALSE(find_stand_ins(known.chain, known.map, quick().robust, 1).of_keyframe[b]);
-  known.map.held_by_loops[b] = true;
-  EXPECT_TRUE(find_stand_ins(known.chain, known.map, quick().robust, 1).of_keyframe[b]);
-  known.map.link_choice[b] = -1;
-  EXPECT_FALSE(find_stand_ins(known.chain, known.map, quick().robust, 1).of_keyframe[b]);
+  known.map.loop_constrained[b] = false;
+  known.chain.edges[b].choice.margin = 0.01;  // another place fits as well
+  ASSERT_LT(edge_probability(known.chain.edges[b]), 0.6);
+  EXPECT_FALSE(find_redundant_keyframes(known.chain, known.map, quick().robust, 1).of_keyframe[b]);
+  known.map.loop_constrained[b] = true;
+  EXPECT_TRUE(find_redundant_keyframes(known.chain, known.map, quick().robust, 1).of_keyframe[b]);
+  known.map.edge_choice[b] = -1;
+  EXPECT_FALSE(find_redundant_keyframes(known.chain, known.map, quick().robust, 1).of_keyframe[b]);
 }
 
 TEST(RetiredKeyframes, LeaveAChainThatSaysWhatTheMapDid) {
   const Laps& laps = two_laps();
   KnownChain known(laps);
-  const auto stand_ins = find_stand_ins(known.chain, known.map, quick().robust, 1).of_keyframe;
-  PoseHypothesis here;
+  const auto redundant = find_redundant_keyframes(known.chain, known.map, quick().robust, 1).of_keyframe;
+  MatchCandidate here;
   here.ref_from_query = {0.1, 0.2, 0.3};
   const std::size_t retired = static_cast<std::size_t>(
-      std::find_if(stand_ins.begin(), stand_ins.end(), [](const auto& s) { return s.has_value(); }) -
-      stand_ins.begin());
+      std::find_if(redundant.begin(), redundant.end(), [](const auto& s) { return s.has_value(); }) -
+      redundant.begin());
   known.chain.attached.push_back({1000, retired, here});
-  LoopKnowledge loops;
+  LoopCandidates loops;
   loops.num_searched = laps.truth.size() - kKeyframesInUse;
-  retire_keyframes(stand_ins, quick(), known.map, known.chain, loops);
+  cull_keyframes(redundant, quick(), known.map, known.chain, loops);
 
   const auto num_retired = static_cast<std::size_t>(
-      std::count_if(stand_ins.begin(), stand_ins.end(), [](const auto& s) { return s.has_value(); }));
+      std::count_if(redundant.begin(), redundant.end(), [](const auto& s) { return s.has_value(); }));
   ASSERT_EQ(known.chain.keyframes.size(), laps.truth.size() - num_retired);
-  ASSERT_EQ(known.chain.links.size(), known.chain.keyframes.size() - 1);
+  ASSERT_EQ(known.chain.edges.size(), known.chain.keyframes.size() - 1);
   EXPECT_EQ(known.chain.attached.size(), num_retired + 1);
   EXPECT_EQ(loops.num_searched, known.chain.keyframes.size() - kKeyframesInUse);
 
   std::set<std::size_t> all;
-  for (const Keyframe& keyframe : known.chain.keyframes) all.insert(keyframe.position_index);
+  for (const Keyframe& keyframe : known.chain.keyframes) all.insert(keyframe.scan_index);
   std::size_t num_settled = 0;
-  for (std::size_t i = 0; i < known.chain.links.size(); ++i) {
-    const Pose2& a = laps.truth[known.chain.keyframes[i].position_index];
-    const Pose2& b = laps.truth[known.chain.keyframes[i + 1].position_index];
-    const PoseConstraint link = link_constraint(known.chain, i, 0);
+  for (std::size_t i = 0; i < known.chain.edges.size(); ++i) {
+    const Pose2& a = laps.truth[known.chain.keyframes[i].scan_index];
+    const Pose2& b = laps.truth[known.chain.keyframes[i + 1].scan_index];
+    const PoseConstraint link = edge_constraint(known.chain, i, 0);
     EXPECT_THAT(link.a_from_b, test::IsNearPose(inverse(a) * b, 1e-9, 1e-9));
-    if (!known.chain.links[i].settled_covariance) continue;
+    if (!known.chain.edges[i].culled_covariance) continue;
     ++num_settled;
-    EXPECT_EQ(link_probability(known.chain.links[i]), 1.0);
+    EXPECT_EQ(edge_probability(known.chain.edges[i]), 1.0);
     EXPECT_TRUE(link.covariance.allFinite());
   }
   EXPECT_GT(num_settled, 0U);
   for (const AttachedScan& scan : known.chain.attached) {
-    const Pose2 keyframe = laps.truth[known.chain.keyframes[scan.keyframe].position_index];
-    const bool is_mine = scan.position_index == 1000;
-    const Pose2 truth = is_mine ? laps.truth[retired] * here.ref_from_query : laps.truth[scan.position_index];
+    const Pose2 keyframe = laps.truth[known.chain.keyframes[scan.keyframe].scan_index];
+    const bool is_mine = scan.scan_index == 1000;
+    const Pose2 truth = is_mine ? laps.truth[retired] * here.ref_from_query : laps.truth[scan.scan_index];
     EXPECT_THAT(keyframe * scan.pose.ref_from_query, test::IsNearPose(truth, 0.10, 2 * kDegree));
-    EXPECT_TRUE(is_mine || all.insert(scan.position_index).second);
+    EXPECT_TRUE(is_mine || all.insert(scan.scan_index).second);
   }
   EXPECT_EQ(all.size(), laps.truth.size());
-  for (const LoopHypothesis& loop : loops.hypotheses) {
-    const Pose2& a = laps.truth[known.chain.keyframes[loop.a].position_index];
-    const Pose2& b = laps.truth[known.chain.keyframes[loop.b].position_index];
+  for (const LoopCandidate& loop : loops.candidates) {
+    const Pose2& a = laps.truth[known.chain.keyframes[loop.a].scan_index];
+    const Pose2& b = laps.truth[known.chain.keyframes[loop.b].scan_index];
     EXPECT_THAT(loop.a_from_b, test::IsNearPose(inverse(a) * b, 1e-9, 1e-9));
   }
 }
@@ -147,17 +148,17 @@ TEST(RetiredKeyframes, LeaveAChainThatSaysWhatTheMapDid) {
 TEST(RetiredKeyframes, NoneMeansThatNothingChanges) {
   const Laps& laps = two_laps();
   KnownChain known(laps);
-  LoopKnowledge loops;
-  loops.hypotheses.push_back({3, 60, {1, 2, 3}, Eigen::Matrix3d::Identity(), 1.5});
+  LoopCandidates loops;
+  loops.candidates.push_back({3, 60, {1, 2, 3}, Eigen::Matrix3d::Identity(), 1.5});
   loops.num_searched = 70;
   loops.num_bridged = 69;
   known.map.constraints.clear();
-  const std::vector<std::optional<StandIn>> none(laps.truth.size());
-  retire_keyframes(none, quick(), known.map, known.chain, loops);
+  const std::vector<std::optional<ReplacementKeyframe>> none(laps.truth.size());
+  cull_keyframes(none, quick(), known.map, known.chain, loops);
   EXPECT_EQ(known.chain.keyframes.size(), laps.truth.size());
-  ASSERT_EQ(loops.hypotheses.size(), 1U);
-  EXPECT_EQ(loops.hypotheses[0].a, 3U);
-  EXPECT_EQ(loops.hypotheses[0].b, 60U);
+  ASSERT_EQ(loops.candidates.size(), 1U);
+  EXPECT_EQ(loops.candidates[0].a, 3U);
+  EXPECT_EQ(loops.candidates[0].b, 60U);
   EXPECT_EQ(loops.num_searched, 70U);
   EXPECT_EQ(loops.num_bridged, 69U);
 }
@@ -170,12 +171,12 @@ TEST(SettledMap, NeedsNoMoreKeyframesForMoreLaps) {
   MappingOptions options = quick();
   options.robust.keyframes.settle_at = 70;
   const MapResult result = mapped(laps.log, options);
-  ASSERT_EQ(result.fragments.size(), 1U);
+  ASSERT_EQ(result.components.size(), 1U);
   ASSERT_EQ(result.placed().size(), laps.truth.size());
   EXPECT_LT(test::worst_off_m(poses_of(result), laps.truth), 0.10);
   EXPECT_LT(num_keyframes(result), laps.truth.size() * 3 / 4);
-  EXPECT_TRUE(result.positions[20].held_by_loops);
-  for (std::size_t i = 0; i < result.positions.size(); ++i) EXPECT_EQ(result.placed()[i].position_index, i);
+  EXPECT_TRUE(result.scans[20].loop_constrained);
+  for (std::size_t i = 0; i < result.scans.size(); ++i) EXPECT_EQ(result.placed()[i].scan_index, i);
 
   options.run.threads = 3;
   const MapResult threaded = mapped(laps.log, options);

@@ -31,21 +31,21 @@ Log log_of(const test::World& world, const std::vector<Pose2>& poses, const test
   std::mt19937 rng(7);
   Log log;
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    log.positions.push_back(test::scan_of(world, poses[i], scanner, rng));
-    log.positions.back().timestamp_s = 100.0 + static_cast<double>(i);
+    log.scans.push_back(test::scan_of(world, poses[i], scanner, rng));
+    log.scans.back().timestamp_s = 100.0 + static_cast<double>(i);
   }
   return log;
 }
 
-Position blind() {
-  Position position = test::scan_of(test::uneven_room(), {});
-  for (float& range_m : position.sub_scans[0].ranges_m) range_m = std::nanf("");
+Scan blind() {
+  Scan position = test::scan_of(test::uneven_room(), {});
+  for (float& range_m : position.sweeps[0].ranges_m) range_m = std::nanf("");
   return position;
 }
 
 test::Scanner four_sub_scans() {
   test::Scanner scanner;
-  scanner.num_sub_scans = 4;
+  scanner.num_sweeps = 4;
   scanner.num_beams = 200;
   scanner.view_rad = 100 * kDegree;
   return scanner;
@@ -57,35 +57,35 @@ MapResult mapped(const Log& log, const MappingOptions& options = test::paper_opt
 }
 
 std::vector<int> fragments_of(const MapResult& result) {
-  std::vector<int> fragments;
-  for (const PositionResult& position : result.positions) fragments.push_back(position.fragment);
-  return fragments;
+  std::vector<int> components;
+  for (const ScanResult& position : result.scans) components.push_back(position.component);
+  return components;
 }
 
 TEST(MapLog, OfNoPositionsIsNoMap) {
   const MapResult result = mapped({});
-  EXPECT_TRUE(result.fragments.empty());
-  EXPECT_TRUE(result.positions.empty());
-  EXPECT_EQ(result.largest_fragment, -1);
+  EXPECT_TRUE(result.components.empty());
+  EXPECT_TRUE(result.scans.empty());
+  EXPECT_EQ(result.largest_component, -1);
   EXPECT_TRUE(result.placed().empty());
   EXPECT_FALSE(result.interrupted);
 }
 
 TEST(MapLog, OfOneScanIsOneFragmentOfOneAtTheOrigin) {
   const MapResult result = mapped(log_of(test::uneven_room(), {{0.3, 0.2, 0.5}}));
-  ASSERT_EQ(result.fragments.size(), 1U);
-  EXPECT_EQ(result.largest_fragment, 0);
+  ASSERT_EQ(result.components.size(), 1U);
+  EXPECT_EQ(result.largest_component, 0);
   ASSERT_EQ(result.placed().size(), 1U);
   EXPECT_THAT(result.placed()[0].map_from_robot, HasSameBits(Pose2{}));
   EXPECT_EQ(result.placed()[0].timestamp_s, 100.0);
-  ASSERT_EQ(result.positions.size(), 1U);
-  EXPECT_TRUE(result.positions[0].starts_fragment);
+  ASSERT_EQ(result.scans.size(), 1U);
+  EXPECT_TRUE(result.scans[0].starts_component);
 }
 
 TEST(MapLog, IdenticalScansAreAllAtTheOrigin) {
   const MapResult result = mapped(log_of(test::cluttered_room(1), std::vector<Pose2>(5)));
   ASSERT_EQ(result.placed().size(), 5U);
-  for (const PlacedPosition& placed : result.placed()) {
+  for (const PlacedScan& placed : result.placed()) {
     EXPECT_THAT(placed.map_from_robot, IsNearPose(Pose2{}, 1e-5, 1e-5));
   }
 }
@@ -97,7 +97,7 @@ TEST(MapLog, FollowsAKnownWalk) {
   const MapResult result = mapped(log_of(test::cluttered_room(2), truth, scanner));
   ASSERT_EQ(result.placed().size(), truth.size());
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    EXPECT_EQ(result.placed()[i].position_index, i);
+    EXPECT_EQ(result.placed()[i].scan_index, i);
     EXPECT_THAT(result.placed()[i].map_from_robot, IsNearPose(inverse(truth[0]) * truth[i], 0.08, 1.5 * kDegree)) << i;
   }
 }
@@ -109,10 +109,10 @@ TEST(MapLog, LooksBackNoFartherThanTheTargetScans) {
   const MapResult result = mapped(log, options);
   ASSERT_EQ(result.placed().size(), 4U);
   for (std::size_t i = 1; i < 4; ++i) {
-    const Alignment pair =
-        align(test::shape_of(log.positions[i - 1], options), test::shape_of(log.positions[i], options), options.align);
-    EXPECT_THAT(result.positions[i].alignment.ref_from_query, IsNearPose(pair.ref_from_query, 1e-9, 1e-9)) << i;
-    EXPECT_EQ(result.positions[i].alignment.overlap, pair.overlap) << i;
+    const ScanMatch pair =
+        align(test::shape_of(log.scans[i - 1], options), test::shape_of(log.scans[i], options), options.align);
+    EXPECT_THAT(result.scans[i].alignment.ref_from_query, IsNearPose(pair.ref_from_query, 1e-9, 1e-9)) << i;
+    EXPECT_EQ(result.scans[i].alignment.overlap, pair.overlap) << i;
   }
 }
 
@@ -121,33 +121,33 @@ TEST(MapLog, PosesAreTheAlignmentsInARow) {
   ASSERT_EQ(result.placed().size(), 6U);
   Pose2 map_from_robot;
   for (std::size_t i = 1; i < 6; ++i) {
-    ASSERT_TRUE(result.positions[i].alignment.ok());
-    map_from_robot = map_from_robot * result.positions[i].alignment.ref_from_query;
+    ASSERT_TRUE(result.scans[i].alignment.ok());
+    map_from_robot = map_from_robot * result.scans[i].alignment.ref_from_query;
     EXPECT_THAT(result.placed()[i].map_from_robot, IsNearPose(map_from_robot, 1e-12, 1e-12)) << i;
   }
 }
 
 TEST(MapLog, APositionWithoutReturnsIsInNoFragmentAndTheNextStartsOne) {
   Log log = log_of(test::cluttered_room(2), walk(4));
-  log.positions.insert(log.positions.begin() + 2, blind());
+  log.scans.insert(log.scans.begin() + 2, blind());
   const MapResult result = mapped(log);
   EXPECT_THAT(fragments_of(result), ElementsAre(0, 0, -1, 1, 1));
-  EXPECT_EQ(result.positions[2].alignment.status, AlignStatus::kNoShape);
-  EXPECT_EQ(result.positions[2].reason, "only 0 shape points, 10 are needed");
-  EXPECT_FALSE(result.positions[2].starts_fragment);
-  EXPECT_TRUE(result.positions[3].starts_fragment);
-  EXPECT_FALSE(result.positions[4].starts_fragment);
-  EXPECT_THAT(result.fragments[1].positions[0].map_from_robot, HasSameBits(Pose2{}));
+  EXPECT_EQ(result.scans[2].alignment.status, MatchStatus::kNoShape);
+  EXPECT_EQ(result.scans[2].reason, "only 0 shape points, 10 are needed");
+  EXPECT_FALSE(result.scans[2].starts_component);
+  EXPECT_TRUE(result.scans[3].starts_component);
+  EXPECT_FALSE(result.scans[4].starts_component);
+  EXPECT_THAT(result.components[1].scans[0].map_from_robot, HasSameBits(Pose2{}));
 }
 
 TEST(MapLog, OfBlindPositionsIsNoMapButAReportOfEach) {
   Log log;
-  log.positions.assign(3, blind());
+  log.scans.assign(3, blind());
   const MapResult result = mapped(log);
-  EXPECT_TRUE(result.fragments.empty());
-  EXPECT_EQ(result.largest_fragment, -1);
-  ASSERT_EQ(result.positions.size(), 3U);
-  for (const PositionResult& position : result.positions) EXPECT_FALSE(position.reason.empty());
+  EXPECT_TRUE(result.components.empty());
+  EXPECT_EQ(result.largest_component, -1);
+  ASSERT_EQ(result.scans.size(), 3U);
+  for (const ScanResult& position : result.scans) EXPECT_FALSE(position.reason.empty());
 }
 
 TEST(MapLog, APositionThatIsNotTrustedStartsAFragmentAndSaysWhy) {
@@ -155,25 +155,25 @@ TEST(MapLog, APositionThatIsNotTrustedStartsAFragmentAndSaysWhy) {
   options.align.trust.min_correspondences = 100000;
   const MapResult result = mapped(log_of(test::cluttered_room(2), walk(3)), options);
   EXPECT_THAT(fragments_of(result), ElementsAre(0, 1, 2));
-  EXPECT_EQ(result.positions[1].alignment.status, AlignStatus::kTooFewCorrespondences);
-  EXPECT_EQ(result.positions[1].reason, result.positions[1].alignment.reason);
-  EXPECT_FALSE(result.positions[1].reason.empty());
-  EXPECT_TRUE(result.positions[0].reason.empty());
+  EXPECT_EQ(result.scans[1].alignment.status, MatchStatus::kTooFewCorrespondences);
+  EXPECT_EQ(result.scans[1].reason, result.scans[1].alignment.reason);
+  EXPECT_FALSE(result.scans[1].reason.empty());
+  EXPECT_TRUE(result.scans[0].reason.empty());
 }
 
 TEST(MapLog, TheLargestFragmentMakesTheMap) {
   Log log = log_of(test::cluttered_room(2), walk(5));
-  log.positions.insert(log.positions.begin() + 2, blind());
+  log.scans.insert(log.scans.begin() + 2, blind());
   const MapResult result = mapped(log);
-  EXPECT_EQ(result.largest_fragment, 1);
+  EXPECT_EQ(result.largest_component, 1);
   ASSERT_EQ(result.placed().size(), 3U);
-  EXPECT_EQ(result.placed()[0].position_index, 3U);
+  EXPECT_EQ(result.placed()[0].scan_index, 3U);
 }
 
 TEST(MapLog, OfEquallyLargeFragmentsTheFirstMakesTheMap) {
   Log log = log_of(test::cluttered_room(2), walk(4));
-  log.positions.insert(log.positions.begin() + 2, blind());
-  EXPECT_EQ(mapped(log).largest_fragment, 0);
+  log.scans.insert(log.scans.begin() + 2, blind());
+  EXPECT_EQ(mapped(log).largest_component, 0);
 }
 
 /// Remembers what it was told and stops when asked for the `stop_at`th time after `done` positions.
@@ -208,7 +208,7 @@ TEST(MapLog, StopsWhenTheObserverAsksAndKeepsWhatIsMapped) {
       options.run.threads = threads;
       const MapResult result = map_log(log, options, watcher);
       EXPECT_TRUE(result.interrupted) << stop_at;
-      EXPECT_EQ(result.positions.size(), 2U);
+      EXPECT_EQ(result.scans.size(), 2U);
       ASSERT_EQ(result.placed().size(), 2U);
       EXPECT_THAT(result.placed()[1].map_from_robot, HasSameBits(whole.placed()[1].map_from_robot));
     }
@@ -219,8 +219,8 @@ TEST(MapLog, StoppedAtOnceHasNothing) {
   Watcher watcher(1);
   const MapResult result = map_log(log_of(test::uneven_room(), walk(2)), test::paper_options(), watcher);
   EXPECT_TRUE(result.interrupted);
-  EXPECT_TRUE(result.positions.empty());
-  EXPECT_EQ(result.largest_fragment, -1);
+  EXPECT_TRUE(result.scans.empty());
+  EXPECT_EQ(result.largest_component, -1);
 }
 
 TEST(MapLog, EveryPositionHasACorrectionPerSubScan) {
@@ -230,9 +230,9 @@ TEST(MapLog, EveryPositionHasACorrectionPerSubScan) {
     options.align.icp.decoupled = decoupled;
     const MapResult result = mapped(log, options);
     ASSERT_EQ(result.placed().size(), 3U);
-    for (const PlacedPosition& placed : result.placed()) ASSERT_EQ(placed.robot_from_sub_scan.size(), 4U);
+    for (const PlacedScan& placed : result.placed()) ASSERT_EQ(placed.robot_from_sweep.size(), 4U);
     bool any_correction = false;
-    for (const Pose2& correction : result.placed()[1].robot_from_sub_scan) {
+    for (const Pose2& correction : result.placed()[1].robot_from_sweep) {
       any_correction = any_correction || !(correction == Pose2{});
     }
     EXPECT_EQ(any_correction, decoupled);
@@ -252,7 +252,7 @@ TEST(MapLog, IsTheSameToTheBitForAnyNumberOfThreads) {
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_THAT(four.placed()[i].map_from_robot, HasSameBits(one.placed()[i].map_from_robot));
     for (std::size_t s = 0; s < 4; ++s) {
-      EXPECT_THAT(four.placed()[i].robot_from_sub_scan[s], HasSameBits(one.placed()[i].robot_from_sub_scan[s]));
+      EXPECT_THAT(four.placed()[i].robot_from_sweep[s], HasSameBits(one.placed()[i].robot_from_sweep[s]));
     }
   }
 }
@@ -260,7 +260,7 @@ TEST(MapLog, IsTheSameToTheBitForAnyNumberOfThreads) {
 TEST(MapLog, NeverLooksAtTheReferencePoses) {
   Log log = log_of(test::cluttered_room(2), walk(3));
   const MapResult without = mapped(log);
-  for (Position& position : log.positions) position.reference_pose = Pose2{99.0, -99.0, 1.0};
+  for (Scan& position : log.scans) position.reference_pose = Pose2{99.0, -99.0, 1.0};
   const MapResult with = mapped(log);
   ASSERT_EQ(with.placed().size(), without.placed().size());
   for (std::size_t i = 0; i < with.placed().size(); ++i) {

@@ -32,55 +32,55 @@ MapResult mapped(const Log& log, const MappingOptions& options = quick()) {
 
 void add_walk(Log& log, const test::World& world, const std::vector<Pose2>& poses, unsigned seed = 7) {
   std::mt19937 rng(seed);
-  if (!log.positions.empty()) log.starts.push_back(log.positions.size());
-  for (const Pose2& pose : poses) log.positions.push_back(test::scan_of(world, pose, test::full_circle(), rng));
+  if (!log.scans.empty()) log.starts.push_back(log.scans.size());
+  for (const Pose2& pose : poses) log.scans.push_back(test::scan_of(world, pose, test::full_circle(), rng));
 }
 
-std::vector<Pose2> poses_of(const Fragment& fragment) {
+std::vector<Pose2> poses_of(const Component& component) {
   std::vector<Pose2> poses;
-  for (const PlacedPosition& placed : fragment.positions) poses.push_back(placed.map_from_robot);
+  for (const PlacedScan& placed : component.scans) poses.push_back(placed.map_from_robot);
   return poses;
 }
 
 std::vector<std::size_t> sizes_of(const MapResult& result) {
   std::vector<std::size_t> sizes;
-  for (const Fragment& fragment : result.fragments) sizes.push_back(fragment.positions.size());
+  for (const Component& component : result.components) sizes.push_back(component.scans.size());
   return sizes;
 }
 
 /// Each position that was looked at is in one fragment, and all of it can be trusted to be there.
 void expect_whole(const MapResult& result, const Log& log) {
-  ASSERT_LE(result.positions.size(), log.positions.size());
+  ASSERT_LE(result.scans.size(), log.scans.size());
   std::map<std::size_t, int> fragment_of;
-  for (std::size_t f = 0; f < result.fragments.size(); ++f) {
-    ASSERT_FALSE(result.fragments[f].positions.empty());
-    EXPECT_THAT(result.fragments[f].positions[0].map_from_robot, test::IsNearPose(Pose2{}, 1e-12, 1e-12));
-    for (const PlacedPosition& placed : result.fragments[f].positions) {
-      EXPECT_TRUE(fragment_of.emplace(placed.position_index, static_cast<int>(f)).second) << "placed twice";
+  for (std::size_t f = 0; f < result.components.size(); ++f) {
+    ASSERT_FALSE(result.components[f].scans.empty());
+    EXPECT_THAT(result.components[f].scans[0].map_from_robot, test::IsNearPose(Pose2{}, 1e-12, 1e-12));
+    for (const PlacedScan& placed : result.components[f].scans) {
+      EXPECT_TRUE(fragment_of.emplace(placed.scan_index, static_cast<int>(f)).second) << "placed twice";
       const Pose2& pose = placed.map_from_robot;
       EXPECT_TRUE(std::isfinite(pose.x_m + pose.y_m + pose.theta_rad));
-      EXPECT_EQ(placed.robot_from_sub_scan.size(), log.positions[placed.position_index].sub_scans.size());
+      EXPECT_EQ(placed.robot_from_sweep.size(), log.scans[placed.scan_index].sweeps.size());
     }
   }
-  for (std::size_t i = 0; i < result.positions.size(); ++i) {
-    EXPECT_EQ(result.positions[i].position_index, i);
+  for (std::size_t i = 0; i < result.scans.size(); ++i) {
+    EXPECT_EQ(result.scans[i].scan_index, i);
     ASSERT_EQ(fragment_of.count(i), 1U) << "all of these scans have shape";
-    EXPECT_EQ(result.positions[i].fragment, fragment_of[i]);
+    EXPECT_EQ(result.scans[i].component, fragment_of[i]);
   }
-  EXPECT_EQ(fragment_of.size(), result.positions.size());
+  EXPECT_EQ(fragment_of.size(), result.scans.size());
   for (const ClosedLoop& loop : result.loops) {
     EXPECT_LT(loop.a, loop.b);
-    EXPECT_LT(loop.b, result.positions.size());
+    EXPECT_LT(loop.b, result.scans.size());
   }
 }
 
 void expect_same_bits(const MapResult& a, const MapResult& b) {
   ASSERT_EQ(sizes_of(a), sizes_of(b));
-  for (std::size_t f = 0; f < a.fragments.size(); ++f) {
-    for (std::size_t i = 0; i < a.fragments[f].positions.size(); ++i) {
-      const PlacedPosition& one = a.fragments[f].positions[i];
-      const PlacedPosition& other = b.fragments[f].positions[i];
-      EXPECT_EQ(one.position_index, other.position_index);
+  for (std::size_t f = 0; f < a.components.size(); ++f) {
+    for (std::size_t i = 0; i < a.components[f].scans.size(); ++i) {
+      const PlacedScan& one = a.components[f].scans[i];
+      const PlacedScan& other = b.components[f].scans[i];
+      EXPECT_EQ(one.scan_index, other.scan_index);
       EXPECT_THAT(one.map_from_robot, HasSameBits(other.map_from_robot));
     }
   }
@@ -100,14 +100,14 @@ TEST(RobustMap, KnowsARingAgainWhenItHasComeRound) {
   const MapResult result = mapped(ring.log);
   expect_whole(result, ring.log);
   ASSERT_THAT(sizes_of(result), ElementsAre(ring.truth.size()));
-  EXPECT_LT(test::worst_off_m(poses_of(result.fragments[0]), ring.truth), 0.15);
+  EXPECT_LT(test::worst_off_m(poses_of(result.components[0]), ring.truth), 0.15);
   const auto closes = [](const ClosedLoop& loop) { return loop.a < 10 && loop.b > test::kRingLap - 5; };
   EXPECT_TRUE(std::any_of(result.loops.begin(), result.loops.end(), closes));
   for (const ClosedLoop& loop : result.loops) {
     const Pose2 a_from_b = inverse(ring.truth[loop.a]) * ring.truth[loop.b];
     EXPECT_THAT(loop.a_from_b, test::IsNearPose(a_from_b, 0.20, 3 * kDegree)) << loop.a << " " << loop.b;
   }
-  EXPECT_TRUE(result.positions[25].held_by_loops);
+  EXPECT_TRUE(result.scans[25].loop_constrained);
   EXPECT_GT(result.times.loops_s, 0.0);
 }
 
@@ -118,11 +118,11 @@ TEST(RobustMap, WithoutLoopsIsTheChainAsItIs) {
   const MapResult result = mapped(ring.log, options);
   expect_whole(result, ring.log);
   EXPECT_TRUE(result.loops.empty());
-  const std::vector<Pose2> poses = poses_of(result.fragments.at(0));
+  const std::vector<Pose2> poses = poses_of(result.components.at(0));
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    const Pose2 chained = poses[i - 1] * result.positions[i].alignment.ref_from_query;
+    const Pose2 chained = poses[i - 1] * result.scans[i].alignment.ref_from_query;
     EXPECT_THAT(poses[i], test::IsNearPose(chained, 1e-9, 1e-9));
-    EXPECT_FALSE(result.positions[i].held_by_loops);
+    EXPECT_FALSE(result.scans[i].loop_constrained);
   }
 }
 
@@ -143,9 +143,9 @@ TEST(RobustMap, OfTwoLogsOfOnePlaceIsOneMap) {
   ASSERT_THAT(sizes_of(result), ElementsAre(two.first.size() + two.second.size()));
   std::vector<Pose2> truth = two.first;
   truth.insert(truth.end(), two.second.begin(), two.second.end());
-  EXPECT_LT(test::worst_off_m(poses_of(result.fragments[0]), truth), 0.15);
+  EXPECT_LT(test::worst_off_m(poses_of(result.components[0]), truth), 0.15);
   EXPECT_FALSE(result.loops.empty());
-  EXPECT_FALSE(result.positions[two.first.size()].starts_fragment);
+  EXPECT_FALSE(result.scans[two.first.size()].starts_component);
 }
 
 TEST(RobustMap, OfTwoLogsOfDifferentPlacesIsOneMapEach) {
@@ -156,8 +156,8 @@ TEST(RobustMap, OfTwoLogsOfDifferentPlacesIsOneMapEach) {
   const MapResult result = mapped(two.log);
   expect_whole(result, two.log);
   EXPECT_THAT(sizes_of(result), ElementsAre(two.first.size(), two.second.size()));
-  const PositionResult& start = result.positions[two.first.size()];
-  EXPECT_TRUE(start.starts_fragment);
+  const ScanResult& start = result.scans[two.first.size()];
+  EXPECT_TRUE(start.starts_component);
   EXPECT_FALSE(result.why_not_in_map(start).empty());
   for (const ClosedLoop& loop : result.loops) EXPECT_EQ(loop.a < two.first.size(), loop.b < two.first.size());
 }
@@ -169,10 +169,10 @@ TEST(RobustMap, ChainsNothingFromOneLogToTheNext) {
   add_walk(log, test::ring_world(1), walk);
   MappingOptions options = quick();
   options.robust.loops.close_loops = false;
-  ASSERT_EQ(mapped(log, options).fragments.size(), 1U);
+  ASSERT_EQ(mapped(log, options).components.size(), 1U);
   log.starts = {2, 4};
   EXPECT_THAT(sizes_of(mapped(log, options)), ElementsAre(2, 2, 1));
-  log.positions.insert(log.positions.begin() + 4, test::blind_position());  // the log starts blind
+  log.scans.insert(log.scans.begin() + 4, test::blind_position());  // the log starts blind
   EXPECT_THAT(sizes_of(mapped(log, options)), ElementsAre(2, 2, 1));
 }
 

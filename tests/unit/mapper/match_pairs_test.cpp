@@ -20,21 +20,21 @@ const std::vector<Pose2> kPoses{{-0.4, 0.1, 0.0}, {0.0, -0.2, 70 * kDegree}, {0.
 
 Log log_of(const std::vector<Pose2>& poses) {
   Log log;
-  for (const Pose2& pose : poses) log.positions.push_back(test::scan_of(test::cluttered_room(3), pose));
+  for (const Pose2& pose : poses) log.scans.push_back(test::scan_of(test::cluttered_room(3), pose));
   return log;
 }
 
 Pose2 true_pose(std::size_t reference, std::size_t query) { return inverse(kPoses[reference]) * kPoses[query]; }
 
-std::vector<AlignedPair> aligned(const Log& log, const std::vector<PositionPair>& pairs, int threads = 1) {
+std::vector<AlignedPair> aligned(const Log& log, const std::vector<ScanPair>& pairs, int threads = 1) {
   MappingOptions options;
   options.run.threads = threads;
   RunObserver nobody;
   return align_pairs(log, log, pairs, options, nobody);
 }
 
-std::vector<PositionPair> all_pairs(std::size_t times) {
-  std::vector<PositionPair> pairs;
+std::vector<ScanPair> all_pairs(std::size_t times) {
+  std::vector<ScanPair> pairs;
   for (std::size_t k = 0; k < times; ++k) {
     for (std::size_t i = 0; i < kPoses.size(); ++i) {
       for (std::size_t j = 0; j < kPoses.size(); ++j) pairs.push_back({i, j, {}});
@@ -45,7 +45,7 @@ std::vector<PositionPair> all_pairs(std::size_t times) {
 
 TEST(AlignPairs, FindsEveryPair) {
   for (const AlignedPair& result : aligned(log_of(kPoses), all_pairs(1))) {
-    EXPECT_EQ(result.alignment.status, AlignStatus::kOk) << result.alignment.reason;
+    EXPECT_EQ(result.alignment.status, MatchStatus::kOk) << result.alignment.reason;
     const Pose2 truth = true_pose(result.pair.reference, result.pair.query);
     EXPECT_THAT(result.alignment.ref_from_query, IsNearPose(truth, 0.03, 1 * kDegree));
     EXPECT_FALSE(result.given);
@@ -55,7 +55,7 @@ TEST(AlignPairs, FindsEveryPair) {
 
 TEST(AlignPairs, AreTheSameForAnyNumberOfThreadsAndWhateverCameBefore) {
   const Log log = log_of(kPoses);
-  const std::vector<PositionPair> pairs = all_pairs(5);  // more than are worked on together
+  const std::vector<ScanPair> pairs = all_pairs(5);  // more than are worked on together
   const std::vector<AlignedPair> one = aligned(log, pairs, 1);
   const std::vector<AlignedPair> three = aligned(log, pairs, 3);
   ASSERT_EQ(one.size(), pairs.size());
@@ -89,10 +89,10 @@ TEST(AlignPairs, JudgesAGivenPoseAsItIsAndRefined) {
 
 TEST(AlignPairs, SayWhichScanHasNoShape) {
   Log log = log_of(kPoses);
-  for (float& range_m : log.positions[1].sub_scans[0].ranges_m) range_m = std::nanf("");
+  for (float& range_m : log.scans[1].sweeps[0].ranges_m) range_m = std::nanf("");
   const std::vector<AlignedPair> results = aligned(log, {{0, 1, Pose2{}}, {1, 0, {}}});
   for (const AlignedPair& result : results) {
-    EXPECT_EQ(result.alignment.status, AlignStatus::kNoShape);
+    EXPECT_EQ(result.alignment.status, MatchStatus::kNoShape);
     EXPECT_FALSE(result.given);
     EXPECT_TRUE(result.alignment.ranked.empty());
   }

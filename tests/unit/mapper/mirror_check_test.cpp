@@ -13,22 +13,22 @@ namespace {
 
 struct Walk {
   Log log;
-  std::vector<PlacedPosition> placed;
+  std::vector<PlacedScan> placed;
 };
 
 /// A walk that turns at random, and what a robot with slipping wheels took for its heading.
-Walk walk(int num_positions, double handedness, double slip_rad, double turn_rad) {
+Walk walk(int num_scans, double handedness, double slip_rad, double turn_rad) {
   std::mt19937 rng(4);
   std::normal_distribution<double> noise(0.0, 1.0);
   Walk walk;
   double heading_rad = 0.0;
   double recorded_rad = 0.0;
-  for (int i = 0; i < num_positions; ++i) {
-    Position position;
+  for (int i = 0; i < num_scans; ++i) {
+    Scan position;
     position.recorded_heading_rad = wrap_angle(recorded_rad);
-    walk.log.positions.push_back(position);
-    PlacedPosition placed;
-    placed.position_index = static_cast<std::size_t>(i);
+    walk.log.scans.push_back(position);
+    PlacedScan placed;
+    placed.scan_index = static_cast<std::size_t>(i);
     placed.map_from_robot.theta_rad = wrap_angle(heading_rad);
     walk.placed.push_back(placed);
     const double step_rad = turn_rad * noise(rng);
@@ -59,7 +59,7 @@ TEST(MirrorCheck, SaysNothingWithoutHeadingsOrWithFewTurns) {
   Walk some = walk(6, -1.0, 0.0, 20 * kDegree);
   EXPECT_FALSE(compare_turns(some.log, some.placed).is_mirrored());
   Walk none = walk(400, -1.0, 0.0, 20 * kDegree);
-  for (Position& position : none.log.positions) position.recorded_heading_rad.reset();
+  for (Scan& position : none.log.scans) position.recorded_heading_rad.reset();
   EXPECT_EQ(compare_turns(none.log, none.placed).num_opposite, 0U);
 }
 

@@ -18,9 +18,9 @@ std::shared_ptr<const ScanView> view_at(const Pose2& pose, unsigned seed = 1) {
 
 Pose2 ahead(double along_m) { return test::on_ring(3.0 + along_m); }
 
-TEST(KeyframeTracker, AttachesScansThatFollowCloselyAtTheRightPlace) {
+TEST(ScanTracker, AttachesScansThatFollowCloselyAtTheRightPlace) {
   const MappingOptions options;
-  KeyframeTracker tracker(options.robust);
+  ScanTracker tracker(options.robust);
   tracker.start(view_at(ahead(0.0)));
   for (unsigned k = 1; k <= 8; ++k) {
     const Pose2 pose = ahead(0.05 * k) * Pose2{0.0, 0.0, 1.5 * kDegree * k};
@@ -30,10 +30,10 @@ TEST(KeyframeTracker, AttachesScansThatFollowCloselyAtTheRightPlace) {
   }
 }
 
-TEST(KeyframeTracker, ADistanceOrATurnTooFarMakesAKeyframe) {
+TEST(ScanTracker, ADistanceOrATurnTooFarMakesAKeyframe) {
   MappingOptions options;
   for (const bool turning : {false, true}) {
-    KeyframeTracker tracker(options.robust);
+    ScanTracker tracker(options.robust);
     tracker.start(view_at(ahead(0.0)));
     unsigned k = 1;
     for (bool attached = true; attached && k < 40; ++k) {
@@ -45,9 +45,9 @@ TEST(KeyframeTracker, ADistanceOrATurnTooFarMakesAKeyframe) {
   }
 }
 
-TEST(KeyframeTracker, AJumpMakesAKeyframe) {
+TEST(ScanTracker, AJumpMakesAKeyframe) {
   const MappingOptions options;
-  KeyframeTracker tracker(options.robust);
+  ScanTracker tracker(options.robust);
   for (const Pose2& jumped : {ahead(2.0), ahead(15.0), ahead(0.3) * Pose2{0.0, 0.0, kPi / 2}}) {
     tracker.start(view_at(ahead(0.0)));
     EXPECT_TRUE(tracker.follow(*view_at(ahead(0.05), 2)));
@@ -58,9 +58,9 @@ TEST(KeyframeTracker, AJumpMakesAKeyframe) {
   EXPECT_FALSE(tracker.follow(test::view_of(test::blind_position())));
 }
 
-TEST(KeyframeTracker, WithoutAKeyframeOrWithAStepOfNoneAttachesNothing) {
+TEST(ScanTracker, WithoutAKeyframeOrWithAStepOfNoneAttachesNothing) {
   MappingOptions options;
-  KeyframeTracker tracker(options.robust);
+  ScanTracker tracker(options.robust);
   EXPECT_FALSE(tracker.follow(*view_at(ahead(0.0))));
   tracker.start(view_at(ahead(0.0)));
   EXPECT_TRUE(tracker.follow(*view_at(ahead(0.0))));
@@ -71,9 +71,9 @@ TEST(KeyframeTracker, WithoutAKeyframeOrWithAStepOfNoneAttachesNothing) {
   EXPECT_FALSE(tracker.follow(*view_at(ahead(0.0))));
 }
 
-TEST(KeyframeTracker, ExpectsNothingWhenAnotherLogStarts) {
+TEST(ScanTracker, ExpectsNothingWhenAnotherLogStarts) {
   const MappingOptions options;
-  KeyframeTracker tracker(options.robust);
+  ScanTracker tracker(options.robust);
   tracker.start(view_at(ahead(0.0)));
   for (unsigned k = 1; k <= 40; ++k) ASSERT_TRUE(tracker.follow(*view_at(ahead(0.01 * k), k)));
   ASSERT_TRUE(tracker.expected());
@@ -84,13 +84,13 @@ TEST(KeyframeTracker, ExpectsNothingWhenAnotherLogStarts) {
 }
 
 /// How the robot moved in another log is no hint.
-TEST(KeyframeTracker, ForgetsTheMotionWhenAnotherLogStarts) {
+TEST(ScanTracker, ForgetsTheMotionWhenAnotherLogStarts) {
   const MappingOptions options;
-  KeyframeTracker used(options.robust);
+  ScanTracker used(options.robust);
   used.start(view_at(ahead(0.0)));
   for (unsigned k = 1; k <= 4; ++k) ASSERT_TRUE(used.follow(*view_at(ahead(0.09 * k), k)));
-  KeyframeTracker fresh(options.robust);
-  for (KeyframeTracker* tracker : {&used, &fresh}) {
+  ScanTracker fresh(options.robust);
+  for (ScanTracker* tracker : {&used, &fresh}) {
     tracker->start(nullptr);
     EXPECT_FALSE(tracker->follow(*view_at(ahead(8.0))));
     tracker->start(view_at(ahead(8.0)));
@@ -103,9 +103,9 @@ TEST(KeyframeTracker, ForgetsTheMotionWhenAnotherLogStarts) {
 }
 
 /// A keyframe is no reason to stop.
-TEST(KeyframeTracker, ExpectsTheMotionToGoOnAfterAKeyframe) {
+TEST(ScanTracker, ExpectsTheMotionToGoOnAfterAKeyframe) {
   const MappingOptions options;
-  KeyframeTracker tracker(options.robust);
+  ScanTracker tracker(options.robust);
   tracker.start(view_at(ahead(0.0)));
   double along_m = 0.0;
   unsigned k = 1;
@@ -130,9 +130,9 @@ TEST(KeyframeTracker, ExpectsTheMotionToGoOnAfterAKeyframe) {
   EXPECT_THAT(tracker.expected()->pose, test::HasSameBits(Pose2{})) << "nobody knows";
 }
 
-TEST(KeyframeTracker, LearnsHowNearScansAreToWhereTheyWereToBeExpected) {
+TEST(ScanTracker, LearnsHowNearScansAreToWhereTheyWereToBeExpected) {
   const MappingOptions options;
-  KeyframeTracker tracker(options.robust);
+  ScanTracker tracker(options.robust);
   std::vector<double> usual_m;
   double along_m = 0.0;
   tracker.start(view_at(ahead(along_m)));
@@ -154,9 +154,9 @@ TEST(KeyframeTracker, LearnsHowNearScansAreToWhereTheyWereToBeExpected) {
   EXPECT_EQ(tracker.expected()->usual_m, kUsualSurprise_m) << "another log";
 }
 
-TEST(KeyframeTracker, LearnsNothingWhileTheSensorStands) {
+TEST(ScanTracker, LearnsNothingWhileTheSensorStands) {
   const MappingOptions options;
-  KeyframeTracker tracker(options.robust);
+  ScanTracker tracker(options.robust);
   tracker.start(view_at(ahead(0.0)));
   for (unsigned k = 1; k <= 80; ++k) ASSERT_TRUE(tracker.follow(*view_at(ahead(0.0))));
   ASSERT_TRUE(tracker.expected());
@@ -168,18 +168,18 @@ Log dense_log(std::size_t count) {
   const test::World world = test::ring_world(1);
   std::mt19937 rng(7);
   for (std::size_t i = 0; i < count; ++i) {
-    log.positions.push_back(test::scan_of(world, ahead(0.07 * static_cast<double>(i)), test::full_circle(), rng));
+    log.scans.push_back(test::scan_of(world, ahead(0.07 * static_cast<double>(i)), test::full_circle(), rng));
   }
   return log;
 }
 
 std::size_t num_keyframes(const MapResult& result) {
   std::size_t count = 0;
-  for (const PositionResult& position : result.positions) count += position.is_keyframe ? 1 : 0;
+  for (const ScanResult& position : result.scans) count += position.is_keyframe ? 1 : 0;
   return count;
 }
 
-TEST(KeyframeTracker, OfADenseLogFewScansAreKeyframesAndAllHaveAPose) {
+TEST(ScanTracker, OfADenseLogFewScansAreKeyframesAndAllHaveAPose) {
   constexpr std::size_t kCount = 48;
   const Log log = dense_log(kCount);
   RunObserver nobody;
@@ -189,15 +189,15 @@ TEST(KeyframeTracker, OfADenseLogFewScansAreKeyframesAndAllHaveAPose) {
   EXPECT_GE(num_keyframes(result), 0.07 * kCount / 0.6);
   ASSERT_EQ(result.placed().size(), kCount);
   for (std::size_t i = 0; i < kCount; ++i) {
-    EXPECT_EQ(result.placed()[i].position_index, i);
+    EXPECT_EQ(result.placed()[i].scan_index, i);
     const Pose2 expected = inverse(ahead(0.0)) * ahead(0.07 * static_cast<double>(i));
     EXPECT_THAT(result.placed()[i].map_from_robot, IsNearPose(expected, 0.10, 2 * kDegree)) << i;
-    EXPECT_EQ(result.why_not_in_map(result.positions[i]), "");
+    EXPECT_EQ(result.why_not_in_map(result.scans[i]), "");
   }
   options.robust.keyframes.step_m = 0.0;
   options.robust.loops.close_loops = false;
   Log few = log;
-  few.positions.resize(10);
+  few.scans.resize(10);
   EXPECT_EQ(num_keyframes(map_log(few, options, nobody)), 10U);
 }
 

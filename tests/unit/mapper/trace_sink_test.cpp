@@ -23,10 +23,10 @@ Log walk_with_a_blind_position() {
   Log log;
   for (std::size_t i = 0; i < kCount; ++i) {
     const auto k = static_cast<double>(i);
-    log.positions.push_back(test::scan_of(test::cluttered_room(2), {-0.4 + 0.15 * k, 0.02 * k * k, 0.0}));
-    log.positions.back().timestamp_s = k;
+    log.scans.push_back(test::scan_of(test::cluttered_room(2), {-0.4 + 0.15 * k, 0.02 * k * k, 0.0}));
+    log.scans.back().timestamp_s = k;
   }
-  for (float& range_m : log.positions[kBlind].sub_scans[0].ranges_m) range_m = 0.0F;
+  for (float& range_m : log.scans[kBlind].sweeps[0].ranges_m) range_m = 0.0F;
   return log;
 }
 
@@ -41,8 +41,8 @@ MappingOptions options_of(Method method) {
 struct Recorder : TraceSink {
   struct Link {
     std::size_t reference, query, num_own;
-    double view_shortfall;
-    std::vector<PoseHypothesis> hypotheses;
+    double insufficient_view;
+    std::vector<MatchCandidate> candidates;
   };
   void on_shape(std::size_t index, const std::vector<ShapePoint>& points) override {
     indices.push_back(index);
@@ -55,15 +55,15 @@ struct Recorder : TraceSink {
     queries.push_back(shown.query_index);
   }
   void on_link(const TracedLink& l) override {
-    links.push_back({l.reference_index, l.query_index, l.num_own, l.view_shortfall, l.hypotheses});
+    edges.push_back({l.reference_index, l.query_index, l.num_own, l.insufficient_view, l.candidates});
   }
   void on_choice(const TracedChoice& choice) override { choices.push_back(choice); }
 
   std::vector<std::size_t> indices, num_points, queries;
-  std::vector<Alignment> alignments;
+  std::vector<ScanMatch> alignments;
   std::vector<AlignTrace> steps;
   std::vector<std::vector<TracedTarget>> targets;
-  std::vector<Link> links;
+  std::vector<Link> edges;
   std::vector<TracedChoice> choices;
 };
 
@@ -78,13 +78,13 @@ TEST(TraceSink, LookingOnChangesNoBit) {
     Recorder recorder;
     const MapResult with = mapped(log, method, &recorder);
     const MapResult without = mapped(log, method, nullptr);
-    ASSERT_EQ(with.positions.size(), kCount);
-    ASSERT_EQ(with.fragments.size(), without.fragments.size());
-    for (std::size_t f = 0; f < with.fragments.size(); ++f) {
-      ASSERT_EQ(with.fragments[f].positions.size(), without.fragments[f].positions.size());
-      for (std::size_t i = 0; i < with.fragments[f].positions.size(); ++i) {
-        EXPECT_THAT(with.fragments[f].positions[i].map_from_robot,
-                    HasSameBits(without.fragments[f].positions[i].map_from_robot));
+    ASSERT_EQ(with.scans.size(), kCount);
+    ASSERT_EQ(with.components.size(), without.components.size());
+    for (std::size_t f = 0; f < with.components.size(); ++f) {
+      ASSERT_EQ(with.components[f].scans.size(), without.components[f].scans.size());
+      for (std::size_t i = 0; i < with.components[f].scans.size(); ++i) {
+        EXPECT_THAT(with.components[f].scans[i].map_from_robot,
+                    HasSameBits(without.components[f].scans[i].map_from_robot));
       }
     }
     EXPECT_THAT(recorder.indices, ElementsAre(0, 1, 2, 3, 4, 5));
@@ -95,12 +95,12 @@ TEST(TraceSink, LookingOnChangesNoBit) {
 TEST(TraceSink, SeesEachAlignmentOfThePapersMethodWithItsTargets) {
   Recorder recorder;
   const MapResult result = mapped(walk_with_a_blind_position(), Method::kPaper, &recorder);
-  EXPECT_TRUE(recorder.links.empty());
+  EXPECT_TRUE(recorder.edges.empty());
   EXPECT_THAT(recorder.queries, ElementsAre(1, 2, 5));  // 4 has nothing before it
   for (std::size_t k = 0; k < recorder.queries.size(); ++k) {
-    const Alignment& alignment = recorder.alignments[k];
+    const ScanMatch& alignment = recorder.alignments[k];
     const AlignTrace& steps = recorder.steps[k];
-    EXPECT_THAT(alignment.ref_from_query, HasSameBits(result.positions[recorder.queries[k]].alignment.ref_from_query));
+    EXPECT_THAT(alignment.ref_from_query, HasSameBits(result.scans[recorder.queries[k]].alignment.ref_from_query));
     ASSERT_GE(steps.best_rotation, 0);
     const RotationMatch& best = steps.rotations[static_cast<std::size_t>(steps.best_rotation)];
     EXPECT_THAT(best.target_from_query(), HasSameBits(alignment.shape_ref_from_query));
@@ -109,8 +109,8 @@ TEST(TraceSink, SeesEachAlignmentOfThePapersMethodWithItsTargets) {
     EXPECT_THAT(steps.icp.steps.back(), HasSameBits(alignment.icp_ref_from_query));
   }
   ASSERT_EQ(recorder.targets[1].size(), 2U);
-  EXPECT_EQ(recorder.targets[1][0].position_index, 0U);
-  EXPECT_EQ(recorder.targets[1][1].position_index, 1U);
+  EXPECT_EQ(recorder.targets[1][0].scan_index, 0U);
+  EXPECT_EQ(recorder.targets[1][1].scan_index, 1U);
   EXPECT_THAT(recorder.targets[1][1].ref_from_robot, test::IsNearPose(Pose2{}, 1e-12, 1e-12));
   EXPECT_EQ(recorder.targets[1][1].num_points, recorder.num_points[1]);
 }
@@ -119,20 +119,20 @@ TEST(TraceSink, SeesWhatTheRobustMethodChoosesFrom) {
   Recorder recorder;
   const MapResult result = mapped(walk_with_a_blind_position(), Method::kRobust, &recorder);
   EXPECT_TRUE(recorder.alignments.empty());
-  ASSERT_EQ(recorder.links.size(), 4U);
+  ASSERT_EQ(recorder.edges.size(), 4U);
   ASSERT_EQ(recorder.choices.size(), 4U);
-  EXPECT_EQ(recorder.links[2].reference, 2U);  // across the blind one
-  EXPECT_EQ(recorder.links[2].query, 4U);
-  for (std::size_t k = 0; k < recorder.links.size(); ++k) {
-    const Recorder::Link& link = recorder.links[k];
+  EXPECT_EQ(recorder.edges[2].reference, 2U);  // across the blind one
+  EXPECT_EQ(recorder.edges[2].query, 4U);
+  for (std::size_t k = 0; k < recorder.edges.size(); ++k) {
+    const Recorder::Link& link = recorder.edges[k];
     const TracedChoice& choice = recorder.choices[k];
     EXPECT_EQ(choice.reference_index, link.reference);
     EXPECT_EQ(choice.query_index, link.query);
     EXPECT_GT(link.num_own, 0U);
-    EXPECT_LE(link.num_own, link.hypotheses.size());
-    ASSERT_LT(choice.alternative, link.hypotheses.size());
-    EXPECT_THAT(link.hypotheses[choice.alternative].ref_from_query,
-                HasSameBits(result.positions[link.query].alignment.ranked[0].ref_from_query));
+    EXPECT_LE(link.num_own, link.candidates.size());
+    ASSERT_LT(choice.candidate, link.candidates.size());
+    EXPECT_THAT(link.candidates[choice.candidate].ref_from_query,
+                HasSameBits(result.scans[link.query].alignment.ranked[0].ref_from_query));
   }
 }
 
@@ -142,19 +142,19 @@ TEST(TraceSink, SeesHowLittleNarrowScansSeeAndThatCountsInTheResult) {
   narrow.view_rad = 91 * kDegree;
   Log log;
   for (const double x_m : {0.0, 0.15}) {
-    log.positions.push_back(test::scan_of(test::cluttered_room(2), {x_m, 0.0, 0.0}, narrow));
+    log.scans.push_back(test::scan_of(test::cluttered_room(2), {x_m, 0.0, 0.0}, narrow));
   }
   MappingOptions options = options_of(Method::kRobust);
   options.robust.edge_verification.doubt_below = 0.0;  // judged by the two scans
   Recorder recorder;
   RunObserver nobody;
   const MapResult result = map_log(log, options, nobody, &recorder);
-  ASSERT_EQ(recorder.links.size(), 1U);
-  const Recorder::Link& link = recorder.links[0];
-  EXPECT_NEAR(link.view_shortfall, 0.2, 0.05);
+  ASSERT_EQ(recorder.edges.size(), 1U);
+  const Recorder::Link& link = recorder.edges[0];
+  EXPECT_NEAR(link.insufficient_view, 0.2, 0.05);
   const TracedChoice& choice = recorder.choices.at(0);
-  const double match = match_probability(link.hypotheses.at(choice.alternative), choice.margin);
-  EXPECT_EQ(result.positions[1].alignment.probability, probability_of_neighbours(match, link.view_shortfall));
+  const double match = match_probability(link.candidates.at(choice.candidate), choice.margin);
+  EXPECT_EQ(result.scans[1].alignment.probability, odometry_probability(match, link.insufficient_view));
 }
 
 TEST(TraceSink, WhatItThrowsEndsTheRun) {

@@ -19,20 +19,20 @@ namespace {
 using test::HasSameBits;
 
 /// In memory, counting what it is asked.
-struct MemoryStore : AlignmentStore {
+struct MemoryStore : MatchCache {
   using Key = std::tuple<std::size_t, std::size_t, SearchKind>;
 
-  std::optional<std::vector<PoseHypothesis>> find(const AlignmentKey& key) override {
+  std::optional<std::vector<MatchCandidate>> find(const MatchKey& key) override {
     const std::lock_guard<std::mutex> lock(mutex);
     const auto found = known.find({key.reference, key.query, key.search});
     if (found == known.end()) return std::nullopt;
     ++num_found;
     return found->second;
   }
-  void keep(const AlignmentKey& key, const std::vector<PoseHypothesis>& hypotheses) override {
+  void keep(const MatchKey& key, const std::vector<MatchCandidate>& candidates) override {
     const std::lock_guard<std::mutex> lock(mutex);
     if (known.size() >= limit) throw std::runtime_error("full");
-    known[{key.reference, key.query, key.search}] = hypotheses;
+    known[{key.reference, key.query, key.search}] = candidates;
     ++num_kept;
   }
 
@@ -46,7 +46,7 @@ struct MemoryStore : AlignmentStore {
   }
 
   std::mutex mutex;
-  std::map<Key, std::vector<PoseHypothesis>> known;
+  std::map<Key, std::vector<MatchCandidate>> known;
   std::size_t num_found = 0;
   std::size_t num_kept = 0;
   std::size_t limit = 1000000;
@@ -60,16 +60,16 @@ Log two_rounds() {
   for (std::size_t i = 0; i < 34; ++i) {
     const double angle_rad = 2 * kPi * static_cast<double>(i) / 16.0;
     const Pose2 pose{0.9 * std::cos(angle_rad), 0.8 * std::sin(angle_rad), wrap_angle(1.7 * angle_rad)};
-    log.positions.push_back(i == 5 ? test::blind_position() : test::scan_of(world, pose, test::half_circle(), rng));
-    log.positions.back().timestamp_s = static_cast<double>(i);
+    log.scans.push_back(i == 5 ? test::blind_position() : test::scan_of(world, pose, test::half_circle(), rng));
+    log.scans.back().timestamp_s = static_cast<double>(i);
   }
   return log;
 }
 
 MappingOptions doubtful() {
   MappingOptions options;
-  options.robust.matcher.search.hypotheses.rotation_peaks = 3;
-  options.robust.matcher.search.hypotheses.refined = 4;
+  options.robust.matcher.search.candidates.rotation_peaks = 3;
+  options.robust.matcher.search.candidates.refined = 4;
   options.robust.matcher.search.voting.peaks = 6;
   options.robust.front_end.doubt_below = 1.0;
   options.robust.loop_detection.bridge_below = 1.0;
@@ -77,7 +77,7 @@ MappingOptions doubtful() {
   return options;
 }
 
-MapResult mapped(const Log& log, AlignmentStore* store, int threads = 2) {
+MapResult mapped(const Log& log, MatchCache* store, int threads = 2) {
   MappingOptions options = doubtful();
   options.run.threads = threads;
   RunObserver nobody;
@@ -85,18 +85,18 @@ MapResult mapped(const Log& log, AlignmentStore* store, int threads = 2) {
 }
 
 void expect_same_bits(const MapResult& a, const MapResult& b) {
-  ASSERT_EQ(a.fragments.size(), b.fragments.size());
-  for (std::size_t f = 0; f < a.fragments.size(); ++f) {
-    ASSERT_EQ(a.fragments[f].positions.size(), b.fragments[f].positions.size());
-    for (std::size_t i = 0; i < a.fragments[f].positions.size(); ++i) {
-      EXPECT_THAT(a.fragments[f].positions[i].map_from_robot, HasSameBits(b.fragments[f].positions[i].map_from_robot));
+  ASSERT_EQ(a.components.size(), b.components.size());
+  for (std::size_t f = 0; f < a.components.size(); ++f) {
+    ASSERT_EQ(a.components[f].scans.size(), b.components[f].scans.size());
+    for (std::size_t i = 0; i < a.components[f].scans.size(); ++i) {
+      EXPECT_THAT(a.components[f].scans[i].map_from_robot, HasSameBits(b.components[f].scans[i].map_from_robot));
     }
   }
   ASSERT_EQ(a.loops.size(), b.loops.size());
   for (std::size_t i = 0; i < a.loops.size(); ++i) EXPECT_EQ(a.loops[i].strength, b.loops[i].strength);
 }
 
-TEST(AlignmentStore, ChangesNothingWhateverItKnows) {
+TEST(MatchCache, ChangesNothingWhateverItKnows) {
   const Log log = two_rounds();
   const MapResult without = mapped(log, nullptr);
   MemoryStore store;
@@ -114,7 +114,7 @@ TEST(AlignmentStore, ChangesNothingWhateverItKnows) {
   }
 }
 
-TEST(AlignmentStore, ThatKnowsAllLeavesNothingToSearch) {
+TEST(MatchCache, ThatKnowsAllLeavesNothingToSearch) {
   const Log log = two_rounds();
   MemoryStore store;
   mapped(log, &store);
@@ -123,26 +123,26 @@ TEST(AlignmentStore, ThatKnowsAllLeavesNothingToSearch) {
   EXPECT_EQ(store.num_kept, 0U);
 }
 
-TEST(AlignmentStore, IsAskedByPosition) {
+TEST(MatchCache, IsAskedByPosition) {
   MemoryStore store;
   mapped(two_rounds(), &store);
   using Key = MemoryStore::Key;
   EXPECT_EQ(store.known.count(Key{4, 6, SearchKind::kFull}), 1U);  // 5 is blind
   std::size_t of_last = 0;
-  std::size_t borrowed = 0;
+  std::size_t multi_reference = 0;
   for (const auto& [key, unused] : store.known) {
     const auto [reference, query, search] = key;
     EXPECT_LT(reference, query);
     EXPECT_NE(reference, 5U);
     EXPECT_NE(query, 5U);
     of_last += query == 33 && search == SearchKind::kLoop ? 1 : 0;
-    borrowed += search == SearchKind::kBorrowed ? 1 : 0;
+    multi_reference += search == SearchKind::kMultiReference ? 1 : 0;
   }
   EXPECT_GT(of_last, 2U);
-  EXPECT_GT(borrowed, 30U);
+  EXPECT_GT(multi_reference, 30U);
 }
 
-TEST(AlignmentStore, EndsTheRunWhenItCannotKeep) {
+TEST(MatchCache, EndsTheRunWhenItCannotKeep) {
   for (const std::size_t limit : {5U, 90U}) {
     MemoryStore store;
     store.limit = limit;

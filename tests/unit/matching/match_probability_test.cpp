@@ -36,8 +36,8 @@ TEST(PoseCovariance, IsLargeAlongABareCorridorWhateverTheHeading) {
   for (const double heading_rad : {0.0, 0.5, kPi / 2, -2.0}) {
     const Eigen::Matrix3d covariance = covariance_in(test::bare_corridor(), {0.0, 0.0, heading_rad}, short_sighted());
     EXPECT_GT(worst_deviation_m(covariance), 1.0);
-    const Eigen::Matrix2d positions = covariance.topLeftCorner<2, 2>();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(positions);
+    const Eigen::Matrix2d scans = covariance.topLeftCorner<2, 2>();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(scans);
     EXPECT_LT(std::sqrt(eigen.eigenvalues()(0)), 0.05) << "the walls hold it";
     const Point2 along = rotate({1.0, 0.0}, -heading_rad);
     EXPECT_GT(std::abs(along.dot(eigen.eigenvectors().col(1))), std::cos(5 * kDegree));
@@ -94,8 +94,8 @@ TEST(PoseCovariance, TurnsWithTheFrame) {
   EXPECT_LT((pose_covariance(turned) - turn * covariance * turn.transpose()).norm(), 1e-6 * covariance.norm());
 }
 
-PoseHypothesis hypothesis(double score, double agree_share) {
-  PoseHypothesis pose;
+MatchCandidate candidate(double score, double agree_share) {
+  MatchCandidate pose;
   pose.score = score;
   pose.visibility.agree = agree_share;
   pose.visibility.hidden = 1.0 - agree_share;
@@ -106,7 +106,7 @@ TEST(MatchProbability, IsAProbabilityWhateverTheEvidence) {
   for (const double score : {-1e6, -50.0, 0.0, 3.0, 1e6}) {
     for (const double margin : {-1e6, -1.0, 0.0, 1e-12, 0.5, 20.0, 1e6}) {
       for (const double agree : {0.0, 0.5, 1.0}) {
-        const double probability = match_probability(hypothesis(score, agree), margin);
+        const double probability = match_probability(candidate(score, agree), margin);
         EXPECT_GE(probability, 0.0);
         EXPECT_LE(probability, 1.0);
       }
@@ -123,22 +123,22 @@ TEST(MatchProbability, NeverFallsWithMarginScoreOrAgreement) {
     const double score = 20.0 * unit(rng) - 15.0;
     const double margin = 25.0 * unit(rng) - 4.0;
     const double agree = 0.9 * unit(rng);
-    const double before = match_probability(hypothesis(score, agree), margin);
-    EXPECT_GE(match_probability(hypothesis(score, agree), margin + 3.0 * unit(rng)), before);
-    EXPECT_GE(match_probability(hypothesis(score + 3.0 * unit(rng), agree), margin), before);
-    EXPECT_GE(match_probability(hypothesis(score, agree + 0.1 * unit(rng)), margin), before);
+    const double before = match_probability(candidate(score, agree), margin);
+    EXPECT_GE(match_probability(candidate(score, agree), margin + 3.0 * unit(rng)), before);
+    EXPECT_GE(match_probability(candidate(score + 3.0 * unit(rng), agree), margin), before);
+    EXPECT_GE(match_probability(candidate(score, agree + 0.1 * unit(rng)), margin), before);
   }
 }
 
 TEST(MatchProbability, TellsAClearWinnerFromATie) {
-  EXPECT_GT(match_probability(hypothesis(2.0, 0.7), kFullMargin), 0.9);
-  EXPECT_LT(match_probability(hypothesis(-10.0, 0.1), 0.0), 0.3);
+  EXPECT_GT(match_probability(candidate(2.0, 0.7), kFullMargin), 0.9);
+  EXPECT_LT(match_probability(candidate(-10.0, 0.1), 0.0), 0.3);
 }
 
 TEST(ProbabilityOfNeighbours, RisesAndStaysAProbability) {
   double before = 0.0;
   for (int k = 0; k <= 100; ++k) {
-    const double probability = probability_of_neighbours(k / 100.0, 0.0);
+    const double probability = odometry_probability(k / 100.0, 0.0);
     EXPECT_GT(probability, before) << k;
     EXPECT_LT(probability, 1.0) << k;
     before = probability;
@@ -146,16 +146,16 @@ TEST(ProbabilityOfNeighbours, RisesAndStaysAProbability) {
 }
 
 TEST(ProbabilityOfNeighbours, TrustsWhatMayAsWellBeOfTwoPlaces) {
-  EXPECT_GT(probability_of_neighbours(0.5, 0.0), 0.9);
-  EXPECT_GT(probability_of_neighbours(0.01, 0.0), 0.5);
-  EXPECT_LT(probability_of_neighbours(1e-6, 0.0), 0.1);
+  EXPECT_GT(odometry_probability(0.5, 0.0), 0.9);
+  EXPECT_GT(odometry_probability(0.01, 0.0), 0.5);
+  EXPECT_LT(odometry_probability(1e-6, 0.0), 0.1);
 }
 
 TEST(ProbabilityOfNeighbours, FallsWithWhatTheyDoNotSee) {
   for (const double match : {0.01, 0.5, 0.99}) {
-    const double odds = log_odds_of(probability_of_neighbours(match, 0.0));
-    EXPECT_LT(log_odds_of(probability_of_neighbours(match, 0.1)), odds - 0.5) << match;
-    EXPECT_LT(log_odds_of(probability_of_neighbours(match, 0.3)), odds - 2.0) << match;
+    const double odds = log_odds_of(odometry_probability(match, 0.0));
+    EXPECT_LT(log_odds_of(odometry_probability(match, 0.1)), odds - 0.5) << match;
+    EXPECT_LT(log_odds_of(odometry_probability(match, 0.3)), odds - 2.0) << match;
   }
 }
 
@@ -166,10 +166,10 @@ TEST(ViewShortfall, IsOfTheScanThatSeesLess) {
   const ScanView all = test::view_from(test::cluttered_room(1), {});
   const ScanView quarter = test::view_from(test::cluttered_room(1), {}, narrow);
   const ScanView half = test::view_from(test::cluttered_room(1), {}, test::half_circle());
-  EXPECT_EQ(view_shortfall(all, all), 0.0);
-  EXPECT_EQ(view_shortfall(all, half), 0.0);
-  EXPECT_NEAR(view_shortfall(all, quarter), 0.2, 0.03);
-  EXPECT_EQ(view_shortfall(quarter, half), view_shortfall(half, quarter));
+  EXPECT_EQ(insufficient_view(all, all), 0.0);
+  EXPECT_EQ(insufficient_view(all, half), 0.0);
+  EXPECT_NEAR(insufficient_view(all, quarter), 0.2, 0.03);
+  EXPECT_EQ(insufficient_view(quarter, half), insufficient_view(half, quarter));
 }
 
 }  // namespace

@@ -15,11 +15,11 @@ using test::HasSameBits;
 using test::IsNearPose;
 using ::testing::IsEmpty;
 
-PoseHypothesis at(const Pose2& pose, double score) {
-  PoseHypothesis hypothesis;
-  hypothesis.ref_from_query = pose;
-  hypothesis.score = score;
-  return hypothesis;
+MatchCandidate at(const Pose2& pose, double score) {
+  MatchCandidate candidate;
+  candidate.ref_from_query = pose;
+  candidate.score = score;
+  return candidate;
 }
 
 bool near(const Pose2& a, const Pose2& b, double distance_m, double angle_rad) {
@@ -27,7 +27,7 @@ bool near(const Pose2& a, const Pose2& b, double distance_m, double angle_rad) {
 }
 
 TEST(BestDistinct, KeepsTheBestOfEachPlaceBestFirst) {
-  const std::vector<PoseHypothesis> best = best_distinct(
+  const std::vector<MatchCandidate> best = best_distinct(
       {at({0, 0, 0}, 1.0), at({2, 0, 0}, 5.0), at({0.01, 0, 0}, 3.0), at({2, 0, 0.01}, 4.0), at({0, 0, kPi}, 2.0)}, 10);
   ASSERT_EQ(best.size(), 3U);
   EXPECT_THAT(best[0].ref_from_query, HasSameBits(Pose2{2, 0, 0}));
@@ -40,7 +40,7 @@ TEST(BestDistinct, KnowsOneHeadingOnEitherSideOfTheFullTurn) {
 }
 
 TEST(BestDistinct, OfEqualScoresTheFirstWins) {
-  const std::vector<PoseHypothesis> best = best_distinct({at({1, 0, 0}, 1.0), at({1.01, 0, 0}, 1.0)}, 5);
+  const std::vector<MatchCandidate> best = best_distinct({at({1, 0, 0}, 1.0), at({1.01, 0, 0}, 1.0)}, 5);
   ASSERT_EQ(best.size(), 1U);
   EXPECT_THAT(best[0].ref_from_query, HasSameBits(Pose2{1, 0, 0}));
 }
@@ -49,22 +49,22 @@ TEST(BestDistinct, OfManyAreApartAndCoverAllOthers) {
   std::mt19937 rng(1);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   for (int round = 0; round < 50; ++round) {
-    std::vector<PoseHypothesis> all;
+    std::vector<MatchCandidate> all;
     for (int k = 0; k < 60; ++k) all.push_back(at({unit(rng), unit(rng), kPi * unit(rng)}, unit(rng)));
-    const std::vector<PoseHypothesis> best = best_distinct(all, 60);
+    const std::vector<MatchCandidate> best = best_distinct(all, 60);
     for (std::size_t i = 0; i < best.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
         EXPECT_GE(best[k].score, best[i].score);
         EXPECT_FALSE(near(best[i].ref_from_query, best[k].ref_from_query, 0.05, kDegree));
       }
     }
-    for (const PoseHypothesis& pose : all) {
-      const bool covered = std::any_of(best.begin(), best.end(), [&](const PoseHypothesis& kept) {
+    for (const MatchCandidate& pose : all) {
+      const bool covered = std::any_of(best.begin(), best.end(), [&](const MatchCandidate& kept) {
         return kept.score >= pose.score && near(kept.ref_from_query, pose.ref_from_query, 0.5, 10 * kDegree);
       });
       EXPECT_TRUE(covered);
     }
-    const std::vector<PoseHypothesis> three = best_distinct(all, 3);
+    const std::vector<MatchCandidate> three = best_distinct(all, 3);
     ASSERT_EQ(three.size(), 3U);
     for (std::size_t i = 0; i < 3; ++i) EXPECT_THAT(three[i].ref_from_query, HasSameBits(best[i].ref_from_query));
   }
@@ -76,9 +76,9 @@ TEST(PoseHypotheses, AreDistinctBestFirstAndNoMoreThanAreKept) {
   const ScanView reference = test::view_from(test::cluttered_room(1), {});
   const ScanView query = test::view_from(test::cluttered_room(1), {0.5, 0.3, 2.0}, test::full_circle(), 2);
   for (const int kept : {1, 3, 10}) {
-    HypothesisSearchOptions options;
-    options.hypotheses.kept = kept;
-    const std::vector<PoseHypothesis> poses = pose_hypotheses(reference, query, options);
+    MatchSearchOptions options;
+    options.candidates.kept = kept;
+    const std::vector<MatchCandidate> poses = find_candidates(reference, query, options);
     ASSERT_FALSE(poses.empty());
     EXPECT_LE(poses.size(), static_cast<std::size_t>(kept));
     EXPECT_THAT(poses[0].ref_from_query, IsNearPose(Pose2{0.5, 0.3, 2.0}, 0.05, kDegree));
@@ -94,10 +94,10 @@ TEST(PoseHypotheses, AreDistinctBestFirstAndNoMoreThanAreKept) {
 TEST(PoseHypotheses, FindAPoseWithoutHelpOfTangentPeaks) {
   const ScanView reference = test::view_from(test::cluttered_room(2), {});
   const ScanView query = test::view_from(test::cluttered_room(2), {0.4, -0.2, -1.3}, test::full_circle(), 2);
-  HypothesisSearchOptions options;
-  options.hypotheses.rotation_peaks = 1;
-  options.hypotheses.all_rotations_below = 100.0;  // never content: all rotations are tried
-  const std::vector<PoseHypothesis> poses = pose_hypotheses(reference, query, options);
+  MatchSearchOptions options;
+  options.candidates.rotation_peaks = 1;
+  options.candidates.all_rotations_below = 100.0;  // never content: all rotations are tried
+  const std::vector<MatchCandidate> poses = find_candidates(reference, query, options);
   ASSERT_FALSE(poses.empty());
   EXPECT_THAT(poses[0].ref_from_query, IsNearPose(Pose2{0.4, -0.2, -1.3}, 0.05, kDegree));
 }
@@ -105,16 +105,16 @@ TEST(PoseHypotheses, FindAPoseWithoutHelpOfTangentPeaks) {
 TEST(PoseHypotheses, WithAnEmptyScanAreNone) {
   const ScanView nothing = test::view_of(test::blind_position());
   const ScanView room = test::view_from(test::cluttered_room(2), {});
-  EXPECT_THAT(pose_hypotheses(nothing, room, {}), IsEmpty());
-  EXPECT_THAT(pose_hypotheses(room, nothing, {}), IsEmpty());
-  EXPECT_THAT(pose_hypotheses(nothing, nothing, {}), IsEmpty());
-  EXPECT_THAT(pose_hypotheses(ScanView{}, ScanView{}, {}), IsEmpty());
+  EXPECT_THAT(find_candidates(nothing, room, {}), IsEmpty());
+  EXPECT_THAT(find_candidates(room, nothing, {}), IsEmpty());
+  EXPECT_THAT(find_candidates(nothing, nothing, {}), IsEmpty());
+  EXPECT_THAT(find_candidates(ScanView{}, ScanView{}, {}), IsEmpty());
 }
 
 TEST(RefinedHypothesis, IsJudgedWhereItEndsUp) {
   const ScanView reference = test::view_from(test::cluttered_room(3), {});
   const ScanView query = test::view_from(test::cluttered_room(3), {0.2, 0.1, 0.3}, test::full_circle(), 2);
-  const PoseHypothesis pose = refined_hypothesis(reference, query, {0.3, 0.2, 0.35}, {});
+  const MatchCandidate pose = refined_candidate(reference, query, {0.3, 0.2, 0.35}, {});
   EXPECT_THAT(pose.ref_from_query, IsNearPose(Pose2{0.2, 0.1, 0.3}, 0.03, kDegree));
   EXPECT_THAT(pose.ref_from_query, HasSameBits(pose.fit.ref_from_query));
   EXPECT_EQ(pose.visibility.agree, visibility(reference, query, pose.ref_from_query, {}).agree);

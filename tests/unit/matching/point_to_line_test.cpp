@@ -126,7 +126,7 @@ TEST(FitToLines, TurnsWithTheQuery) {
   const test::World world = test::cluttered_room(4);
   const ScanView reference = test::view_from(world, {});
   std::mt19937 rng(2);
-  const Position query = test::scan_of(world, {0.2, -0.1, 0.1}, test::full_circle(), rng);
+  const Scan query = test::scan_of(world, {0.2, -0.1, 0.1}, test::full_circle(), rng);
   const Pose2 start{0.1, 0.0, 0.05};
   const Pose2 found = fit_to_lines(reference, test::view_of(query), start, {}).ref_from_query;
   for (const double turn_rad : {-2.0, 0.5, 3.0}) {

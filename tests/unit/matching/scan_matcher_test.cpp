@@ -17,7 +17,7 @@ using test::HasSameBits;
 using test::IsNanPose;
 using test::IsNearPose;
 
-bool is_right(const Alignment& alignment, const Pose2& truth) {
+bool is_right(const ScanMatch& alignment, const Pose2& truth) {
   return alignment.has_pose() && (alignment.ref_from_query.translation() - truth.translation()).norm() < 0.10 &&
          angle_between(alignment.ref_from_query.theta_rad, truth.theta_rad) < 2 * kDegree;
 }
@@ -35,7 +35,7 @@ TEST(RobustAlign, FindsAnyHeadingAndOffsetInAFurnishedRoom) {
     const ScanView seen = test::view_from(world, world_from_reference, test::full_circle(), 2);
     const Pose2 world_from_query{0.9 * unit(rng), 0.9 * unit(rng), 5.0 * k * kDegree};
     const ScanView query = test::view_from(world, world_from_query, test::full_circle(), 3);
-    const Alignment found = robust_align(seen, query, {});
+    const ScanMatch found = match_scans(seen, query, {});
     const bool right = is_right(found, inverse(world_from_reference) * world_from_query);
     num_right += right ? 1 : 0;
     num_sure += found.ok() ? 1 : 0;
@@ -55,7 +55,7 @@ TEST(RobustAlign, FindsAHalfCirclesNeighbour) {
     const Pose2 truth{0.5 * unit(rng), 0.5 * unit(rng), 40 * kDegree * unit(rng)};
     const ScanView reference = test::view_from(world, {}, test::half_circle(), 1);
     const ScanView query = test::view_from(world, truth, test::half_circle(), 2);
-    num_right += is_right(robust_align(reference, query, {}), truth) ? 1 : 0;
+    num_right += is_right(match_scans(reference, query, {}), truth) ? 1 : 0;
   }
   EXPECT_GE(num_right, 34);
 }
@@ -65,7 +65,7 @@ TEST(RobustAlign, IsNotSureOfTwoPlacesWithNothingInCommon) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     const ScanView here = test::view_from(test::strange_place(seed), {}, test::full_circle(), 1);
     const ScanView there = test::view_from(test::strange_place(1000 + seed), {}, test::full_circle(), 2);
-    num_sure += robust_align(here, there, {}).ok() ? 1 : 0;
+    num_sure += match_scans(here, there, {}).ok() ? 1 : 0;
   }
   EXPECT_LE(num_sure, 1);
 }
@@ -75,22 +75,22 @@ TEST(RobustAlign, IsNotSureWhereAlongABareCorridorItStands) {
   scanner.max_range_m = 8.0;
   const ScanView reference = test::view_from(test::bare_corridor(), {}, scanner, 1);
   const ScanView query = test::view_from(test::bare_corridor(), {0.7, 0.0, 0.0}, scanner, 2);
-  EXPECT_FALSE(robust_align(reference, query, {}).ok());
+  EXPECT_FALSE(match_scans(reference, query, {}).ok());
 }
 
 TEST(RobustAlign, SaysWhyThereIsNoPose) {
   const ScanView nothing = test::view_of(test::blind_position());
   const ScanView room = test::view_from(test::cluttered_room(1), {});
-  for (const Alignment& alignment :
-       {robust_align(nothing, room, {}), robust_align(room, nothing, {}), robust_align(nothing, nothing, {})}) {
-    EXPECT_EQ(alignment.status, AlignStatus::kNoCorrespondences);
+  for (const ScanMatch& alignment :
+       {match_scans(nothing, room, {}), match_scans(room, nothing, {}), match_scans(nothing, nothing, {})}) {
+    EXPECT_EQ(alignment.status, MatchStatus::kNoCorrespondences);
     EXPECT_FALSE(alignment.has_pose());
     EXPECT_THAT(alignment.ref_from_query, IsNanPose());
     EXPECT_FALSE(alignment.reason.empty());
   }
 }
 
-void expect_consistent(const Alignment& alignment) {
+void expect_consistent(const ScanMatch& alignment) {
   const Pose2& pose = alignment.ref_from_query;
   if (alignment.has_pose()) {
     EXPECT_TRUE(std::isfinite(pose.x_m) && std::isfinite(pose.y_m) && std::isfinite(pose.theta_rad));
@@ -121,28 +121,27 @@ TEST(RobustAlign, TakesScansOfOneBeamOrWithReadingsThatAreNone) {
                                              std::vector<float>(180, 1e-6F),
                                              std::vector<float>(180, 999.0F),
                                              std::vector<float>(180, 1.0F)}) {
-    Position position;
-    SubScan sub_scan;
-    sub_scan.ranges_m = ranges_m;
-    sub_scan.first_angle_rad = -1.0;
-    sub_scan.angle_step_rad = kDegree;
-    position.sub_scans.push_back(sub_scan);
+    Scan position;
+    Sweep sweep;
+    sweep.ranges_m = ranges_m;
+    sweep.first_angle_rad = -1.0;
+    sweep.angle_step_rad = kDegree;
+    position.sweeps.push_back(sweep);
     const ScanView odd = test::view_of(position);
-    expect_consistent(robust_align(odd, room, {}));
-    expect_consistent(robust_align(room, odd, {}));
-    expect_consistent(robust_align(odd, odd, {}));
+    expect_consistent(match_scans(odd, room, {}));
+    expect_consistent(match_scans(room, odd, {}));
+    expect_consistent(match_scans(odd, odd, {}));
   }
-  expect_consistent(robust_align(test::view_of(Position{}), room, {}));
+  expect_consistent(match_scans(test::view_of(Scan{}), room, {}));
 }
 
 TEST(RobustAlign, FindsThePoseAlthoughSomeReadingsAreNone) {
   const test::World world = test::cluttered_room(1);
   std::mt19937 rng(3);
   const Pose2 truth{0.4, 0.2, 1.0};
-  Position query = test::scan_of(world, truth, test::full_circle(), rng);
-  for (std::size_t k = 0; k < query.sub_scans[0].ranges_m.size(); k += 4)
-    query.sub_scans[0].ranges_m[k] = std::nanf("");
-  const Alignment found = robust_align(test::view_from(world, {}), test::view_of(query), {});
+  Scan query = test::scan_of(world, truth, test::full_circle(), rng);
+  for (std::size_t k = 0; k < query.sweeps[0].ranges_m.size(); k += 4) query.sweeps[0].ranges_m[k] = std::nanf("");
+  const ScanMatch found = match_scans(test::view_from(world, {}), test::view_of(query), {});
   expect_consistent(found);
   EXPECT_TRUE(is_right(found, truth));
 }
@@ -151,13 +150,13 @@ TEST(RobustAlign, TurnsWithTheQuery) {
   const test::World world = test::cluttered_room(2);
   const ScanView reference = test::view_from(world, {});
   std::mt19937 rng(4);
-  const Position query = test::scan_of(world, {0.5, -0.2, 0.3}, test::full_circle(), rng);
-  const Alignment found = robust_align(reference, test::view_of(query), {});
+  const Scan query = test::scan_of(world, {0.5, -0.2, 0.3}, test::full_circle(), rng);
+  const ScanMatch found = match_scans(reference, test::view_of(query), {});
   ASSERT_TRUE(found.has_pose());
   for (int k = 1; k < 24; ++k) {
     const double turn_rad = 15.3 * k * kDegree;
     const Pose2 turn{0.0, 0.0, turn_rad};
-    const Alignment turned = robust_align(reference, test::view_of(test::turned(query, turn_rad)), {});
+    const ScanMatch turned = match_scans(reference, test::view_of(test::turned(query, turn_rad)), {});
     ASSERT_TRUE(turned.has_pose());
     // The start of the refinement differs, by the grid of the votes.
     EXPECT_THAT(turned.ref_from_query * turn, IsNearPose(found.ref_from_query, 0.02, 0.5 * kDegree)) << k;
@@ -167,13 +166,13 @@ TEST(RobustAlign, TurnsWithTheQuery) {
 TEST(RobustAlign, TurnsWithTheReference) {
   const test::World world = test::cluttered_room(2);
   std::mt19937 rng(4);
-  const Position reference = test::scan_of(world, {0.1, 0.2, 0.0}, test::full_circle(), rng);
+  const Scan reference = test::scan_of(world, {0.1, 0.2, 0.0}, test::full_circle(), rng);
   const ScanView query = test::view_from(world, {0.5, -0.2, 0.3}, test::full_circle(), 2);
-  const Alignment found = robust_align(test::view_of(reference), query, {});
+  const ScanMatch found = match_scans(test::view_of(reference), query, {});
   ASSERT_TRUE(found.has_pose());
   for (int k = 1; k < 12; ++k) {
     const double turn_rad = 31.7 * k * kDegree;
-    const Alignment turned = robust_align(test::view_of(test::turned(reference, turn_rad)), query, {});
+    const ScanMatch turned = match_scans(test::view_of(test::turned(reference, turn_rad)), query, {});
     ASSERT_TRUE(turned.has_pose());
     EXPECT_THAT(Pose2({0.0, 0.0, -turn_rad}) * turned.ref_from_query,
                 IsNearPose(found.ref_from_query, 0.02, 0.5 * kDegree));
@@ -183,30 +182,30 @@ TEST(RobustAlign, TurnsWithTheReference) {
 TEST(RobustAlign, IsTheSameToTheBitTheSecondTime) {
   const ScanView reference = test::view_from(test::cluttered_room(2), {});
   const ScanView query = test::view_from(test::cluttered_room(2), {0.5, -0.2, 0.3}, test::full_circle(), 2);
-  const Alignment once = robust_align(reference, query, {});
-  const Alignment again = robust_align(reference, query, {});
+  const ScanMatch once = match_scans(reference, query, {});
+  const ScanMatch again = match_scans(reference, query, {});
   EXPECT_THAT(again.ref_from_query, HasSameBits(once.ref_from_query));
   EXPECT_EQ(again.probability, once.probability);
   EXPECT_EQ(again.ranked.size(), once.ranked.size());
 }
 
 /// A pose that is held in all directions and that most points agree with.
-PoseHypothesis good_hypothesis(const Pose2& pose, double score) {
-  PoseHypothesis hypothesis;
-  hypothesis.ref_from_query = pose;
-  hypothesis.score = score;
-  hypothesis.visibility.agree = 9.0;
-  hypothesis.visibility.hidden = 1.0;
-  hypothesis.fit.partners = 100;
-  hypothesis.fit.lever_m = 2.0;
-  hypothesis.fit.information.diagonal() << 50.0, 50.0, 200.0;
-  return hypothesis;
+MatchCandidate good_hypothesis(const Pose2& pose, double score) {
+  MatchCandidate candidate;
+  candidate.ref_from_query = pose;
+  candidate.score = score;
+  candidate.visibility.agree = 9.0;
+  candidate.visibility.hidden = 1.0;
+  candidate.fit.partners = 100;
+  candidate.fit.lever_m = 2.0;
+  candidate.fit.information.diagonal() << 50.0, 50.0, 200.0;
+  return candidate;
 }
 
 TEST(Judged, RanksTheChosenOneFirst) {
-  const std::vector<PoseHypothesis> poses{good_hypothesis({1, 0, 0}, 4.0), good_hypothesis({2, 0, 0}, 3.0),
+  const std::vector<MatchCandidate> poses{good_hypothesis({1, 0, 0}, 4.0), good_hypothesis({2, 0, 0}, 3.0),
                                           good_hypothesis({3, 0, 0}, 2.0), good_hypothesis({4, 0, 0}, 2.5)};
-  const Alignment alignment = judged(poses, 1, 1.5, {0.0, 0.0, 10.0});
+  const ScanMatch alignment = judged(poses, 1, 1.5, {0.0, 0.0, 10.0});
   EXPECT_TRUE(alignment.ok());
   EXPECT_THAT(alignment.ref_from_query, HasSameBits(Pose2{2, 0, 0}));
   std::vector<double> places_m;
@@ -218,21 +217,21 @@ TEST(Judged, RanksTheChosenOneFirst) {
 }
 
 TEST(Judged, TakesTheProbabilityThatIsKnownBetter) {
-  const std::vector<PoseHypothesis> good{good_hypothesis({1, 0, 0}, 4.0)};
+  const std::vector<MatchCandidate> good{good_hypothesis({1, 0, 0}, 4.0)};
   EXPECT_EQ(judged(good, 0, kFullMargin, {0.5, 0.0, 10.0}, 0.75).probability, 0.75);
-  EXPECT_EQ(judged(good, 0, kFullMargin, {0.5, 0.0, 10.0}, 0.75).status, AlignStatus::kOk);
-  EXPECT_EQ(judged(good, 0, kFullMargin, {0.5, 0.0, 10.0}, 0.25).status, AlignStatus::kAmbiguous);
+  EXPECT_EQ(judged(good, 0, kFullMargin, {0.5, 0.0, 10.0}, 0.75).status, MatchStatus::kOk);
+  EXPECT_EQ(judged(good, 0, kFullMargin, {0.5, 0.0, 10.0}, 0.25).status, MatchStatus::kAmbiguous);
 }
 
 TEST(Judged, GivesEachVerdictForItsReason) {
-  const std::vector<PoseHypothesis> good{good_hypothesis({1, 0, 0}, 4.0)};
-  EXPECT_EQ(judged(good, 0, kFullMargin, {1.0, 0.0, 10.0}).status, AlignStatus::kAmbiguous);
-  EXPECT_EQ(judged(good, 0, kFullMargin, {0.0, 0.95, 10.0}).status, AlignStatus::kTooLittleOverlap);
-  EXPECT_EQ(judged({}, 0, 0.0, {}).status, AlignStatus::kNoCorrespondences);
-  std::vector<PoseHypothesis> sliding = good;
+  const std::vector<MatchCandidate> good{good_hypothesis({1, 0, 0}, 4.0)};
+  EXPECT_EQ(judged(good, 0, kFullMargin, {1.0, 0.0, 10.0}).status, MatchStatus::kAmbiguous);
+  EXPECT_EQ(judged(good, 0, kFullMargin, {0.0, 0.95, 10.0}).status, MatchStatus::kTooLittleOverlap);
+  EXPECT_EQ(judged({}, 0, 0.0, {}).status, MatchStatus::kNoCorrespondences);
+  std::vector<MatchCandidate> sliding = good;
   sliding[0].fit.information(0, 0) = 0.0;
-  EXPECT_EQ(judged(sliding, 0, kFullMargin, {0.0, 0.0, 0.5}).status, AlignStatus::kDegenerate);
-  EXPECT_EQ(judged(good, 0, kFullMargin, {0.0, 0.0, 0.5}).status, AlignStatus::kOk);
+  EXPECT_EQ(judged(sliding, 0, kFullMargin, {0.0, 0.0, 0.5}).status, MatchStatus::kDegenerate);
+  EXPECT_EQ(judged(good, 0, kFullMargin, {0.0, 0.0, 0.5}).status, MatchStatus::kOk);
   for (const ConfidenceOptions& options :
        {ConfidenceOptions{1.0, 0.0, 10.0}, ConfidenceOptions{0.0, 0.95, 10.0}, ConfidenceOptions{0.0, 0.0, 0.5}}) {
     expect_consistent(judged(good, 0, kFullMargin, options));

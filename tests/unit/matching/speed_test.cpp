@@ -80,7 +80,7 @@ class Speed : public testing::Test {
 // look at more may raise its bound.
 
 TEST_F(Speed, OfAView) {
-  const Position position = test::scan_of(world_, {}, test::half_circle());
+  const Scan position = test::scan_of(world_, {}, test::half_circle());
   EXPECT_LT(length_of([&] { test::view_of(position); }), 1.25);
 }
 
@@ -108,18 +108,18 @@ TEST_F(Speed, OfVisibility) {
 
 TEST_F(Speed, OfRefinement) {
   const auto ten_times = [&] {
-    for (int k = 0; k < 10; ++k) refined_hypothesis(reference_, query_, {0.4 + 0.02 * k, -0.2, 0.35}, {});
+    for (int k = 0; k < 10; ++k) refined_candidate(reference_, query_, {0.4 + 0.02 * k, -0.2, 0.35}, {});
   };
   EXPECT_LT(length_of(ten_times), 1.85);
 }
 
 TEST_F(Speed, OfAnAlignment) {
-  EXPECT_LT(length_of([&] { robust_align(reference_, query_, {}); }), 9.7);
+  EXPECT_LT(length_of([&] { match_scans(reference_, query_, {}); }), 9.7);
 }
 
 TEST_F(Speed, OfAnAlignmentOfDifferentPlaces) {
   const ScanView elsewhere = test::view_from(test::strange_place(1), {});
-  EXPECT_LT(length_of([&] { robust_align(reference_, elsewhere, {}); }), 24.7);
+  EXPECT_LT(length_of([&] { match_scans(reference_, elsewhere, {}); }), 24.7);
 }
 
 }  // namespace

@@ -133,10 +133,10 @@ TEST(Visibility, LooksAtEverySecondPointWhenAskedTo) {
   EXPECT_EQ(visibility(all_around(2.0), query, {}, {}, 1.0, 1).total(), 10.0);
 }
 
-Visibility between(const test::World& world, const Pose2& a, const Pose2& b, const Pose2& hypothesis) {
+Visibility between(const test::World& world, const Pose2& a, const Pose2& b, const Pose2& candidate) {
   const ScanView reference = test::view_from(world, a, test::half_circle(), 1);
   const ScanView query = test::view_from(world, b, test::half_circle(), 2);
-  return visibility(reference, query, hypothesis, {});
+  return visibility(reference, query, candidate, {});
 }
 
 TEST(Visibility, IsTheSameFromEitherScan) {

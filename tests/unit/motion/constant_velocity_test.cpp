@@ -34,10 +34,10 @@ TEST(Surprise, IsMoreWhereScansAreUsuallyNearer) {
   EXPECT_NEAR(surprise({kPose, 0.1, 5 * kDegree}, found), 4.0, 1e-9);
 }
 
-MotionExpectation after(std::size_t count, double off_m, double off_rad, std::size_t num_jumps = 0) {
+ConstantVelocityPrior after(std::size_t count, double off_m, double off_rad, std::size_t num_jumps = 0) {
   std::mt19937 rng(5);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
-  MotionExpectation expectation;
+  ConstantVelocityPrior expectation;
   for (std::size_t i = 0; i < count; ++i) {
     const bool jumps = i < num_jumps;
     expectation.learn({jumps ? 3.0 : off_m * any(rng), 0.0, jumps ? 2.0 : off_rad * any(rng)});
@@ -45,7 +45,7 @@ MotionExpectation after(std::size_t count, double off_m, double off_rad, std::si
   return expectation;
 }
 
-TEST(MotionExpectation, KnowsNothingOfFew) {
+TEST(ConstantVelocityPrior, KnowsNothingOfFew) {
   const ExpectedPose expected = after(20, 0.01, 0.01).at(kPose);
   EXPECT_THAT(expected.pose, HasSameBits(kPose));
   EXPECT_EQ(expected.usual_m, kUsualSurprise_m);
@@ -53,13 +53,13 @@ TEST(MotionExpectation, KnowsNothingOfFew) {
 }
 
 /// Twice what 95 of 100 are within.
-TEST(MotionExpectation, LearnsWhatIsUsual) {
+TEST(ConstantVelocityPrior, LearnsWhatIsUsual) {
   const ExpectedPose expected = after(400, 0.08, 4 * kDegree).at(kPose);
   EXPECT_NEAR(expected.usual_m, 2 * 0.95 * 0.08, 0.015);
   EXPECT_NEAR(expected.usual_rad, 2 * 0.95 * 4 * kDegree, 1 * kDegree);
 }
 
-TEST(MotionExpectation, IsNoMoreThanTheWorstAndNoLessThanWhatScansHold) {
+TEST(ConstantVelocityPrior, IsNoMoreThanTheWorstAndNoLessThanWhatScansHold) {
   const ExpectedPose wild = after(400, 1.0, 1.0).at(kPose);
   EXPECT_EQ(wild.usual_m, kUsualSurprise_m);
   EXPECT_EQ(wild.usual_rad, kUsualSurprise_rad);
@@ -68,7 +68,7 @@ TEST(MotionExpectation, IsNoMoreThanTheWorstAndNoLessThanWhatScansHold) {
   EXPECT_NEAR(steady.usual_rad, 25 * kDegree / 8, 1e-9);
 }
 
-TEST(MotionExpectation, FewJumpsChangeLittle) {
+TEST(ConstantVelocityPrior, FewJumpsChangeLittle) {
   EXPECT_NEAR(after(400, 0.08, 4 * kDegree, 10).at(kPose).usual_m, after(400, 0.08, 4 * kDegree).at(kPose).usual_m,
               0.02);
 }

@@ -197,9 +197,9 @@ struct TurnedSubScan {
   Shape wrong;
 };
 
-TurnedSubScan turned_sub_scan(int sub_scan, const Pose2& error, double spacing_m = 0.05) {
+TurnedSubScan turned_sub_scan(int sweep, const Pose2& error, double spacing_m = 0.05) {
   test::Scanner scanner;
-  scanner.num_sub_scans = 4;
+  scanner.num_sweeps = 4;
   scanner.num_beams = 401;
   scanner.view_rad = 100 * kDegree;
   MappingOptions options = test::paper_options();
@@ -207,16 +207,16 @@ TurnedSubScan turned_sub_scan(int sub_scan, const Pose2& error, double spacing_m
   const test::World world = test::cluttered_room(2);
   const Shape right = test::shape_of(test::scan_of(world, {}, scanner), options);
   std::vector<Pose2> errors(4);
-  errors[static_cast<std::size_t>(sub_scan)] = error;
+  errors[static_cast<std::size_t>(sweep)] = error;
   return {world, right, moved(right, {}, errors)};
 }
 
 /// Mean distance of the points of a sub-scan to the nearest wall.
-double off_the_walls_m(const test::World& world, const Shape& shape, int sub_scan) {
+double off_the_walls_m(const test::World& world, const Shape& shape, int sweep) {
   double sum_m = 0.0;
   int count = 0;
   for (const ShapePoint& point : shape.points) {
-    if (point.sub_scan != sub_scan) continue;
+    if (point.sweep != sweep) continue;
     sum_m += test::distance_to_walls_m(world, point.p_m);
     ++count;
   }

@@ -74,7 +74,7 @@ TEST_P(AlignSeeds, FindsAKnownMotionInAClutteredRoom) {
   std::mt19937 rng(seed);
   const double turn_deg = std::uniform_real_distribution<double>(-2.0, 2.0)(rng);
   const TwoViews views = two_views(seed, turn_deg, 0.5);
-  const Alignment found = align(views.reference, views.query, options_for_test());
+  const ScanMatch found = align(views.reference, views.query, options_for_test());
   ASSERT_TRUE(found.ok()) << found.reason;
   EXPECT_THAT(found.ref_from_query, IsNearPose(views.ref_from_query, 0.05, 1 * kDegree));
 }
@@ -86,7 +86,7 @@ TEST(Align, FindsALargeTurnWithAWideGrid) {
   options.rotation = {60 * kDegree, 2 * kDegree};
   for (const unsigned seed : {1U, 2U, 3U}) {
     const TwoViews views = two_views(seed, 40.0, 0.3);
-    const Alignment found = align(views.reference, views.query, options);
+    const ScanMatch found = align(views.reference, views.query, options);
     ASSERT_TRUE(found.ok()) << found.reason;
     EXPECT_THAT(found.ref_from_query, IsNearPose(views.ref_from_query, 0.05, 1 * kDegree)) << seed;
     EXPECT_NEAR(found.rotation_rad, 40 * kDegree, 4.1 * kDegree);
@@ -100,14 +100,14 @@ TEST(Align, FindsTheMotionWithThePapersLiteralReadingsToo) {
   const Pose2 motion{0.2, 0.1, 1 * kDegree};
   const Shape reference = test::shape_of(test::scan_of(room, {}), strict);
   const Shape query = test::shape_of(test::scan_of(room, motion), strict);
-  const Alignment found = align(reference, query, strict.align);
+  const ScanMatch found = align(reference, query, strict.align);
   ASSERT_TRUE(found.ok()) << found.reason;
   EXPECT_THAT(found.ref_from_query, IsNearPose(motion, 0.10, 1.5 * kDegree));
 }
 
 TEST(Align, TwoIdenticalScansAreAtTheSamePlace) {
   const Shape shape = test::shape_from(test::cluttered_room(1), {});
-  const Alignment found = align(shape, shape, options_for_test());
+  const ScanMatch found = align(shape, shape, options_for_test());
   ASSERT_TRUE(found.ok()) << found.reason;
   EXPECT_THAT(found.ref_from_query, IsNearPose(Pose2{}, 1e-6, 1e-6));
   EXPECT_EQ(found.overlap_ratio, 1.0);
@@ -121,8 +121,8 @@ TEST(Align, WithoutShapeIsRefusedWithTheNumbers) {
     AlignTrace trace;
     trace.best_rotation = 2;
     trace.rotations.resize(5);
-    const Alignment refused = align(reference, query, options_for_test(), &trace);
-    EXPECT_EQ(refused.status, AlignStatus::kNoShape);
+    const ScanMatch refused = align(reference, query, options_for_test(), &trace);
+    EXPECT_EQ(refused.status, MatchStatus::kNoShape);
     EXPECT_EQ(trace.best_rotation, -1) << "nothing is left of an earlier alignment";
     EXPECT_TRUE(trace.rotations.empty());
     EXPECT_THAT(refused.reason, HasSubstr("10 are needed"));
@@ -133,15 +133,15 @@ TEST(Align, WithoutShapeIsRefusedWithTheNumbers) {
 /// A straight row of points.
 Shape row(double tangent_rad) {
   Shape shape;
-  shape.num_sub_scans = 1;
+  shape.num_sweeps = 1;
   for (int i = 0; i < 40; ++i) shape.points.push_back({rotate({0.05 * i, 1.0}, tangent_rad), tangent_rad, 0});
   return shape;
 }
 
 TEST(Align, WithoutSimilarTangentsIsRefused) {
   AlignTrace trace;
-  const Alignment refused = align(row(0.0), row(kPi / 2), options_for_test(), &trace);
-  EXPECT_EQ(refused.status, AlignStatus::kNoCorrespondences);
+  const ScanMatch refused = align(row(0.0), row(kPi / 2), options_for_test(), &trace);
+  EXPECT_EQ(refused.status, MatchStatus::kNoCorrespondences);
   EXPECT_FALSE(refused.reason.empty());
   EXPECT_THAT(refused.ref_from_query, IsNanPose());
   EXPECT_EQ(trace.best_rotation, -1);
@@ -152,8 +152,8 @@ TEST(Align, WithFewerCorrespondencesThanAskedForIsRefused) {
   const Shape shape = test::shape_from(test::cluttered_room(1), {});
   AlignOptions options = options_for_test();
   options.trust.min_correspondences = static_cast<int>(shape.size()) + 1;
-  const Alignment refused = align(shape, shape, options);
-  EXPECT_EQ(refused.status, AlignStatus::kTooFewCorrespondences);
+  const ScanMatch refused = align(shape, shape, options);
+  EXPECT_EQ(refused.status, MatchStatus::kTooFewCorrespondences);
   EXPECT_THAT(refused.reason, HasSubstr(std::to_string(options.trust.min_correspondences) + " are needed"));
   EXPECT_THAT(refused.ref_from_query, IsNanPose());
 }
@@ -162,28 +162,28 @@ TEST(Align, WithLessOverlapThanAskedForIsRefused) {
   const TwoViews views = two_views(2, 1.0, 0.5);
   AlignOptions options = options_for_test();
   options.trust.min_overlap_ratio = 1.0;
-  const Alignment refused = align(views.reference, views.query, options);
-  EXPECT_EQ(refused.status, AlignStatus::kTooLittleOverlap);
+  const ScanMatch refused = align(views.reference, views.query, options);
+  EXPECT_EQ(refused.status, MatchStatus::kTooLittleOverlap);
   EXPECT_THAT(refused.reason, HasSubstr("1 is needed"));
   EXPECT_THAT(refused.ref_from_query, IsNanPose());
   EXPECT_FALSE(std::isnan(refused.icp_ref_from_query.x_m));  // what was refused can be looked at
 }
 
-TEST(Alignment, HasNoPoseBeforeThereIsAResult) {
-  EXPECT_FALSE(Alignment{}.ok());
-  EXPECT_THAT(Alignment{}.ref_from_query, IsNanPose());
+TEST(ScanMatch, HasNoPoseBeforeThereIsAResult) {
+  EXPECT_FALSE(ScanMatch{}.ok());
+  EXPECT_THAT(ScanMatch{}.ref_from_query, IsNanPose());
 }
 
-void expect_same_bits(const Alignment& a, const Alignment& b) {
+void expect_same_bits(const ScanMatch& a, const ScanMatch& b) {
   EXPECT_EQ(a.status, b.status);
   EXPECT_THAT(a.ref_from_query, HasSameBits(b.ref_from_query));
   EXPECT_THAT(a.shape_ref_from_query, HasSameBits(b.shape_ref_from_query));
   EXPECT_EQ(a.num_correspondences, b.num_correspondences);
   EXPECT_EQ(a.overlap, b.overlap);
   EXPECT_EQ(a.icp_iterations, b.icp_iterations);
-  ASSERT_EQ(a.query_from_sub_scan.size(), b.query_from_sub_scan.size());
-  for (std::size_t s = 0; s < a.query_from_sub_scan.size(); ++s) {
-    EXPECT_THAT(a.query_from_sub_scan[s], HasSameBits(b.query_from_sub_scan[s]));
+  ASSERT_EQ(a.query_from_sweep.size(), b.query_from_sweep.size());
+  for (std::size_t s = 0; s < a.query_from_sweep.size(); ++s) {
+    EXPECT_THAT(a.query_from_sweep[s], HasSameBits(b.query_from_sweep[s]));
   }
 }
 
@@ -193,7 +193,7 @@ TEST(Align, IsTheSameToTheBitForAnyNumberOfThreads) {
   options.rotation = {6 * kDegree, 1 * kDegree};
   options.icp.decoupled = true;
   options.threads = 1;
-  const Alignment one = align(views.reference, views.query, options);
+  const ScanMatch one = align(views.reference, views.query, options);
   for (const int threads : {2, 4, 32}) {
     options.threads = threads;
     expect_same_bits(align(views.reference, views.query, options), one);
@@ -210,7 +210,7 @@ TEST(Align, IsTheSameToTheBitWithATraceAndWithout) {
 TEST(Align, TraceIsWhatLedToTheResult) {
   const TwoViews views = two_views(6, 0.7, 0.5);
   AlignTrace trace;
-  const Alignment found = align(views.reference, views.query, options_for_test(), &trace);
+  const ScanMatch found = align(views.reference, views.query, options_for_test(), &trace);
   ASSERT_TRUE(found.ok()) << found.reason;
   ASSERT_EQ(trace.rotations.size(), 5U);
   ASSERT_GE(trace.best_rotation, 0);
@@ -248,7 +248,7 @@ TEST(Align, CorrespondencesOfTheTraceAreShapePoints) {
 
 TEST(Align, DecoupledIcpIsLeftOutOnRequest) {
   test::Scanner scanner;
-  scanner.num_sub_scans = 4;
+  scanner.num_sweeps = 4;
   scanner.num_beams = 200;
   scanner.view_rad = 100 * kDegree;
   const test::World room = test::cluttered_room(8);
@@ -256,11 +256,11 @@ TEST(Align, DecoupledIcpIsLeftOutOnRequest) {
   const Shape query = test::shape_from(room, {0.3, 0.1, 0.01}, scanner);
   AlignOptions options = options_for_test();
   options.icp.decoupled = false;
-  const Alignment without = align(reference, query, options);
-  ASSERT_EQ(without.query_from_sub_scan.size(), 4U);
-  for (const Pose2& correction : without.query_from_sub_scan) EXPECT_THAT(correction, HasSameBits(Pose2{}));
+  const ScanMatch without = align(reference, query, options);
+  ASSERT_EQ(without.query_from_sweep.size(), 4U);
+  for (const Pose2& correction : without.query_from_sweep) EXPECT_THAT(correction, HasSameBits(Pose2{}));
   options.icp.decoupled = true;
-  EXPECT_EQ(align(reference, query, options).query_from_sub_scan.size(), 4U);
+  EXPECT_EQ(align(reference, query, options).query_from_sweep.size(), 4U);
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ TEST(EvenBeams, AreNoneWhereNothingCanBeRight) {
 }
 
 TEST(UnevenBeams, HaveTheTypicalStepAndTheDirectionOfMost) {
-  SubScan scan;
+  Sweep scan;
   scan.ranges_m = {1.0F, 1.0F, 1.0F, 1.0F, 1.0F};
   set_beam_angles(scan, {0.0, -0.1, -0.2, -0.15, -0.5});
   EXPECT_NEAR(scan.angle_step_rad, -0.1, 1e-12);
@@ -68,7 +68,7 @@ TEST(UnevenBeams, HaveTheTypicalStepAndTheDirectionOfMost) {
 }
 
 TEST(UnevenBeams, GiveReturnsFromRightToLeftInAnyOrderOfReadings) {
-  SubScan scan;
+  Sweep scan;
   scan.ranges_m = {3.0F, 1.0F, 4.0F, 2.0F};
   set_beam_angles(scan, {0.3, 0.1, 0.4, 0.2});
   std::vector<double> ranges_m;
@@ -84,10 +84,10 @@ TEST(UnevenBeams, GiveReturnsFromRightToLeftInAnyOrderOfReadings) {
 }
 
 TEST(UnevenBeams, GoToTheNearestOfEvenOnes) {
-  SubScan scan;
+  Sweep scan;
   scan.ranges_m = {1.0F, 2.0F, std::nanf(""), 4.0F, 3.0F};
   set_beam_angles(scan, {0.0, 0.11, 0.2, 0.3, 0.31});
-  const SubScan even = on_even_beams(scan);
+  const Sweep even = on_even_beams(scan);
   EXPECT_TRUE(even.is_evenly_spaced());
   ASSERT_EQ(even.ranges_m.size(), 4U);
   EXPECT_EQ(even.ranges_m[0], 1.0F);
@@ -97,7 +97,7 @@ TEST(UnevenBeams, GoToTheNearestOfEvenOnes) {
 }
 
 TEST(BeamTimes, GoOnFromTheStartByTheStep) {
-  SubScan scan;
+  Sweep scan;
   scan.start_s = 0.5;
   scan.beam_time_step_s = 0.01;
   EXPECT_DOUBLE_EQ(scan.beam_time_s(10), 0.6);

@@ -10,7 +10,7 @@ Log log_of(std::size_t count, const std::string& format, double first_s) {
   Log log;
   log.format = format;
   log.warnings = {format + " is odd"};
-  for (std::size_t i = 0; i < count; ++i) log.positions.push_back({first_s + static_cast<double>(i), {}, {}, {}});
+  for (std::size_t i = 0; i < count; ++i) log.scans.push_back({first_s + static_cast<double>(i), {}, {}, {}});
   return log;
 }
 
@@ -19,9 +19,9 @@ TEST(JoinedLogs, HasAllPositionsInOrderAndKnowsWhereEachLogBegins) {
   EXPECT_EQ(all.format, "carmen+rawlog");
   EXPECT_EQ(all.warnings, (std::vector<std::string>{"carmen is odd", "rawlog is odd", "carmen is odd"}));
   EXPECT_EQ(all.starts, (std::vector<std::size_t>{3, 5}));
-  ASSERT_EQ(all.positions.size(), 9U);
-  EXPECT_EQ(all.positions[4].timestamp_s, 1.0) << "times of different logs may collide";
-  EXPECT_EQ(all.positions[5].timestamp_s, 50.0);
+  ASSERT_EQ(all.scans.size(), 9U);
+  EXPECT_EQ(all.scans[4].timestamp_s, 1.0) << "times of different logs may collide";
+  EXPECT_EQ(all.scans[5].timestamp_s, 50.0);
   const std::vector<std::size_t> expected{0, 0, 0, 1, 1, 2, 2, 2, 2};
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(part_with(all, i), expected[i]) << i;
   const std::vector<LogPart> parts = parts_of(all);

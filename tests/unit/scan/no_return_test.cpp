@@ -37,8 +37,8 @@ Log sweeps(int count, const std::function<Pose2(int)>& world_from_robot = drivin
   scanner.max_range_m = seen_m;
   Log log;
   for (int i = 0; i < count; ++i) {
-    log.positions.push_back(test::scan_of(world, world_from_robot(i), scanner, rng));
-    SubScan& scan = log.positions.back().sub_scans.front();
+    log.scans.push_back(test::scan_of(world, world_from_robot(i), scanner, rng));
+    Sweep& scan = log.scans.back().sweeps.front();
     scan.max_range_m = 0.0;
     scan.sensor_label = "laser";
     for (float& range_m : scan.ranges_m) {
@@ -54,8 +54,8 @@ using Code = std::function<double(int)>;  ///< of the number of the sweep
 /// Gives lost readings a distance; how many there are.
 std::size_t say_lost(Log& log, const Code& code_m) {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < log.positions.size(); ++i) {
-    for (SubScan& scan : log.positions[i].sub_scans) {
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    for (Sweep& scan : log.scans[i].sweeps) {
       for (float& range_m : scan.ranges_m) {
         if (range_m != kLost) continue;
         range_m = static_cast<float>(code_m(static_cast<int>(i)));
@@ -68,16 +68,16 @@ std::size_t say_lost(Log& log, const Code& code_m) {
 
 std::size_t num_hits(const Log& log) {
   std::size_t count = 0;
-  for (const Position& position : log.positions) {
-    for (const SubScan& scan : position.sub_scans) count += returns_in_robot(scan, {}).size();
+  for (const Scan& position : log.scans) {
+    for (const Sweep& scan : position.sweeps) count += returns_in_robot(scan, {}).size();
   }
   return count;
 }
 
 std::size_t num_seen(const Log& log) {
   std::size_t count = 0;
-  for (const Position& position : log.positions) {
-    for (const float range_m : position.sub_scans.front().ranges_m) count += range_m != kLost ? 1 : 0;
+  for (const Scan& position : log.scans) {
+    for (const float range_m : position.sweeps.front().ranges_m) count += range_m != kLost ? 1 : 0;
   }
   return count;
 }
@@ -97,7 +97,7 @@ TEST(NoReturn, ALevelAtTheTopIsTheMaximum) {
     ASSERT_THAT(log.no_returns, SizeIs(1)) << code_m;
     expect_level(log.no_returns[0], code_m, code_m, lost);
     EXPECT_EQ(log.no_returns[0].sensor_label, "laser");
-    EXPECT_FLOAT_EQ(static_cast<float>(log.positions[9].sub_scans[0].max_range_m), static_cast<float>(code_m));
+    EXPECT_FLOAT_EQ(static_cast<float>(log.scans[9].sweeps[0].max_range_m), static_cast<float>(code_m));
     EXPECT_EQ(num_hits(log), seen);
   }
 }
@@ -112,7 +112,7 @@ TEST(NoReturn, OnALevelAmongTheReadingsOnlyItsReadingsGo) {
     EXPECT_FLOAT_EQ(static_cast<float>(log.no_returns[0].from_m), static_cast<float>(code_m));
     EXPECT_FLOAT_EQ(static_cast<float>(log.no_returns[0].to_m), static_cast<float>(code_m));
     EXPECT_GE(log.no_returns[0].num_readings, lost);
-    EXPECT_EQ(log.positions[9].sub_scans[0].max_range_m, 0.0);
+    EXPECT_EQ(log.scans[9].sweeps[0].max_range_m, 0.0);
     EXPECT_LE(num_hits(log), seen);
     EXPECT_GT(num_hits(log), seen * 99 / 100);  // some surfaces are just as far
   }
@@ -122,7 +122,7 @@ TEST(NoReturn, ASpreadLevelIsTakenWholeAndNoWider) {
   Log log = sweeps(60);
   int turn = 0;
   const std::size_t lost = say_lost(log, [&](int) { return 51.0 + 0.05 * (turn++ % 5); });
-  log.positions[3].sub_scans[0].ranges_m[4] = 50.7F;
+  log.scans[3].sweeps[0].ranges_m[4] = 50.7F;
   sort_out_no_returns(log, {});
   ASSERT_THAT(log.no_returns, SizeIs(1));
   EXPECT_NEAR(log.no_returns[0].from_m, 51.0, 1e-5);
@@ -135,7 +135,7 @@ TEST(NoReturn, OddReadingsBeyondALevelAreNoneEither) {
   const std::size_t seen = num_seen(log);
   int turn = 0;
   say_lost(log, [&](int) { return ++turn % 40 == 0 ? 55.0 + 0.37 * (turn % 97) : 51.15; });
-  log.positions[3].sub_scans[0].ranges_m[50] = 77.7F;
+  log.scans[3].sweeps[0].ranges_m[50] = 77.7F;
   const std::size_t hits_before = seen;
   sort_out_no_returns(log, {});
   ASSERT_FALSE(log.no_returns.empty());
@@ -160,34 +160,34 @@ TEST(NoReturn, EachSensorHasItsOwn) {
   say_lost(log, [](int) { return 9.0; });
   say_lost(rear, [](int) { return 12.34; });
   for (std::size_t i = 0; i < 60; ++i) {
-    log.positions[i].sub_scans.push_back(rear.positions[i].sub_scans[0]);
-    log.positions[i].sub_scans[1].sensor_label = "rear";
+    log.scans[i].sweeps.push_back(rear.scans[i].sweeps[0]);
+    log.scans[i].sweeps[1].sensor_label = "rear";
   }
   sort_out_no_returns(log, {});
   ASSERT_THAT(log.no_returns, SizeIs(2));
   EXPECT_EQ(log.no_returns[1].sensor_label, "rear");
-  EXPECT_FLOAT_EQ(static_cast<float>(log.positions[0].sub_scans[0].max_range_m), 9.0F);
-  EXPECT_FLOAT_EQ(static_cast<float>(log.positions[0].sub_scans[1].max_range_m), 12.34F);
+  EXPECT_FLOAT_EQ(static_cast<float>(log.scans[0].sweeps[0].max_range_m), 9.0F);
+  EXPECT_FLOAT_EQ(static_cast<float>(log.scans[0].sweeps[1].max_range_m), 12.34F);
 }
 
 TEST(NoReturn, AHeaderDoesNotOverruleSurfacesFarBeyondIt) {
   Log log = sweeps(60);
   const std::size_t seen = num_seen(log);
   say_lost(log, [](int) { return 51.15; });
-  for (Position& position : log.positions) position.sub_scans[0].max_range_m = 1.5;
+  for (Scan& position : log.scans) position.sweeps[0].max_range_m = 1.5;
   sort_out_no_returns(log, {});
   EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("maximum range of 1.5 m")));
-  EXPECT_FLOAT_EQ(static_cast<float>(log.positions[0].sub_scans[0].max_range_m), 51.15F);
+  EXPECT_FLOAT_EQ(static_cast<float>(log.scans[0].sweeps[0].max_range_m), 51.15F);
   EXPECT_EQ(num_hits(log), seen);
 }
 
 TEST(NoReturn, AHeaderWithNothingBeyondItHolds) {
   Log log = sweeps(60);
   say_lost(log, [](int) { return 4.3; });
-  for (Position& position : log.positions) position.sub_scans[0].max_range_m = 3.9;
+  for (Scan& position : log.scans) position.sweeps[0].max_range_m = 3.9;
   sort_out_no_returns(log, {});
   EXPECT_THAT(log.warnings, IsEmpty());
-  EXPECT_EQ(log.positions[0].sub_scans[0].max_range_m, 3.9);
+  EXPECT_EQ(log.scans[0].sweeps[0].max_range_m, 3.9);
 }
 
 TEST(NoReturn, SurfacesAreNoLevels) {
@@ -199,7 +199,7 @@ TEST(NoReturn, SurfacesAreNoLevels) {
       Log log = sweeps(150, motion, 100.0, noise_m);
       sort_out_no_returns(log, {});
       EXPECT_THAT(log.no_returns, IsEmpty());
-      EXPECT_EQ(log.positions[0].sub_scans[0].max_range_m, 0.0);
+      EXPECT_EQ(log.scans[0].sweeps[0].max_range_m, 0.0);
     }
   }
 }
@@ -207,8 +207,8 @@ TEST(NoReturn, SurfacesAreNoLevels) {
 TEST(NoReturn, CoarseReadingsAndLostBeamsAreNoLevels) {
   Log log = sweeps(150, driving, 100.0);
   std::mt19937 rng(1);
-  for (Position& position : log.positions) {
-    for (float& range_m : position.sub_scans[0].ranges_m) {
+  for (Scan& position : log.scans) {
+    for (float& range_m : position.sweeps[0].ranges_m) {
       range_m = rng() % 2 == 0 ? std::numeric_limits<float>::quiet_NaN() : std::round(range_m * 20.0F) / 20.0F;
     }
   }
@@ -244,14 +244,14 @@ TEST(NoReturn, TheUserHasTheLastWord) {
   Log none = learned;
   sort_out_no_returns(none, no_return_choice("none"));
   EXPECT_THAT(none.no_returns, IsEmpty());
-  EXPECT_EQ(none.positions[0].sub_scans[0].max_range_m, 0.0);
+  EXPECT_EQ(none.scans[0].sweeps[0].max_range_m, 0.0);
 
   Log given = learned;
   sort_out_no_returns(given, no_return_choice("1.5-1.6,51.15"));
   ASSERT_THAT(given.no_returns, SizeIs(2));
   EXPECT_GE(given.no_returns[0].from_m, 1.4995);
   EXPECT_LE(given.no_returns[0].to_m, 1.6005);
-  EXPECT_FLOAT_EQ(static_cast<float>(given.positions[0].sub_scans[0].max_range_m), 51.15F);
+  EXPECT_FLOAT_EQ(static_cast<float>(given.scans[0].sweeps[0].max_range_m), 51.15F);
 }
 
 TEST(NoReturn, AChoiceThatMakesNoSenseIsAnError) {

@@ -23,8 +23,8 @@ using testing::IsEmpty;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-SubScan half_circle() {
-  SubScan scan;
+Sweep half_circle() {
+  Sweep scan;
   scan.ranges_m.assign(181, 2.0F);
   scan.first_angle_rad = -kPi / 2;
   scan.angle_step_rad = kDegree;
@@ -33,7 +33,7 @@ SubScan half_circle() {
 }
 
 TEST(Plausibility, SaysWhatIsFoundAndWhatWasExpected) {
-  SubScan scan = half_circle();
+  Sweep scan = half_circle();
   EXPECT_THAT(implausibility(scan), IsEmpty());
   scan.angle_step_rad = 1e12;
   EXPECT_EQ(implausibility(scan), "angle_step of 1e+12 rad, expected at most a full turn");
@@ -43,19 +43,18 @@ TEST(Plausibility, SaysWhatIsFoundAndWhatWasExpected) {
 }
 
 TEST(Plausibility, EveryNumberOfAScanIsLookedAt) {
-  const std::vector<double SubScan::*> numbers{&SubScan::first_angle_rad, &SubScan::angle_step_rad,
-                                               &SubScan::min_range_m, &SubScan::max_range_m,
-                                               &SubScan::nominal_heading_rad};
+  const std::vector<double Sweep::*> numbers{&Sweep::first_angle_rad, &Sweep::angle_step_rad, &Sweep::min_range_m,
+                                             &Sweep::max_range_m, &Sweep::nominal_heading_rad};
   const std::vector<double MountPose::*> of_mount{&MountPose::x_m,     &MountPose::y_m,       &MountPose::z_m,
                                                   &MountPose::yaw_rad, &MountPose::pitch_rad, &MountPose::roll_rad};
   for (const double wrong : {kNan, kInfinity, -kInfinity, 1e39, -1e39, 1e308}) {
-    for (double SubScan::*number : numbers) {
-      SubScan scan = half_circle();
+    for (double Sweep::*number : numbers) {
+      Sweep scan = half_circle();
       scan.*number = wrong;
       EXPECT_THAT(implausibility(scan), HasSubstr("expected")) << wrong;
     }
     for (double MountPose::*number : of_mount) {
-      SubScan scan = half_circle();
+      Sweep scan = half_circle();
       scan.robot_from_sensor.*number = wrong;
       EXPECT_THAT(implausibility(scan), AllOf(HasSubstr("mount"), HasSubstr("expected"))) << wrong;
     }
@@ -63,7 +62,7 @@ TEST(Plausibility, EveryNumberOfAScanIsLookedAt) {
 }
 
 TEST(Plausibility, WhatIsUnusualPasses) {
-  SubScan scan = half_circle();
+  Sweep scan = half_circle();
   scan.angle_step_rad = -2.0 * kPi / 180;  // clockwise, and all round
   scan.first_angle_rad = 2.0 * kPi;
   scan.robot_from_sensor = {-12.0, 3.0, 40.0, kPi, -0.1, -kPi};  // upside down on a crane
@@ -82,7 +81,7 @@ TEST(Plausibility, WhatIsUnusualPasses) {
 }
 
 TEST(Plausibility, AScanGoesRoundTwiceAtMostAndItsBeamsAreApart) {
-  SubScan scan = half_circle();
+  Sweep scan = half_circle();
   scan.angle_step_rad = 0.1;  // 180 times
   EXPECT_THAT(implausibility(scan), HasSubstr("18 rad, expected at most two full turns"));
   for (const double step_rad : {0.0, 1e-9, -1e-9, 1e-308}) {
@@ -93,13 +92,13 @@ TEST(Plausibility, AScanGoesRoundTwiceAtMostAndItsBeamsAreApart) {
 }
 
 TEST(Plausibility, BeamsWithAnglesAndTimesOfTheirOwnAreLookedAtOneByOne) {
-  SubScan scan;
+  Sweep scan;
   scan.ranges_m.assign(3, 2.0F);
   set_beam_angles(scan, {0.0, 0.1, 0.3});
   scan.beam_times_s = {0.0F, 0.01F, 0.02F};
   scan.intensities = {1.0F, 2.0F, 3.0F};
   EXPECT_THAT(implausibility(scan), IsEmpty());
-  SubScan wrong = scan;
+  Sweep wrong = scan;
   wrong.beam_angles_rad[1] = kNan;
   EXPECT_THAT(implausibility(wrong), HasSubstr("a beam's angle of nan rad"));
   wrong = scan;
@@ -123,10 +122,10 @@ TEST(Plausibility, BeamsWithAnglesAndTimesOfTheirOwnAreLookedAtOneByOne) {
 }
 
 TEST(Plausibility, OfAPositionTheFirstFaultIsSaid) {
-  Position position;
-  position.sub_scans = {half_circle(), half_circle()};
+  Scan position;
+  position.sweeps = {half_circle(), half_circle()};
   EXPECT_THAT(implausibility(position), IsEmpty());
-  position.sub_scans[1].angle_step_rad = kNan;
+  position.sweeps[1].angle_step_rad = kNan;
   EXPECT_THAT(implausibility(position), HasSubstr("sub-scan 1: angle_step of nan rad"));
   position.reference_pose = Pose2{kInfinity, 0.0, 0.0};
   EXPECT_THAT(implausibility(position), HasSubstr("reference pose: x of inf m"));
@@ -147,16 +146,16 @@ std::string refusal(const Work& work) {
 
 TEST(Plausibility, MappingNamesThePositionOfALogThatWasMadeByHand) {
   Log log;
-  log.positions.resize(5);
-  for (Position& position : log.positions) position.sub_scans = {half_circle()};
-  log.positions[3].sub_scans[0].first_angle_rad = kNan;
+  log.scans.resize(5);
+  for (Scan& position : log.scans) position.sweeps = {half_circle()};
+  log.scans[3].sweeps[0].first_angle_rad = kNan;
   RunObserver observer;
   EXPECT_THAT(refusal([&] { map_log(log, {}, observer); }), HasSubstr("position 3: first_angle of nan rad"));
   MappingOptions paper;
   paper.run.method = Method::kPaper;
   EXPECT_THAT(refusal([&] { map_log(log, paper, observer); }), HasSubstr("position 3: first_angle of nan rad"));
   EXPECT_THAT(refusal([&] { align_pairs(log, log, {{0, 1, {}}}, {}, observer); }), HasSubstr("position 3: "));
-  log.positions.resize(3);
+  log.scans.resize(3);
   EXPECT_THAT(refusal([&] {
                 align_pairs(log, log, {{0, 1, Pose2{0.0, kNan, 0.0}}}, {}, observer);
               }),
@@ -165,16 +164,16 @@ TEST(Plausibility, MappingNamesThePositionOfALogThatWasMadeByHand) {
 
 TEST(Plausibility, ReadingsOfAnyKindAreNoFault) {
   Log log;
-  log.positions.resize(2);
-  for (Position& position : log.positions) position.sub_scans = {half_circle()};
+  log.scans.resize(2);
+  for (Scan& position : log.scans) position.sweeps = {half_circle()};
   const std::vector<float> odd{std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),   -1.0F,
                                std::numeric_limits<float>::max(),       std::numeric_limits<float>::denorm_min(), 0.0F};
-  for (std::size_t i = 0; i < 60; ++i) log.positions[0].sub_scans[0].ranges_m[3 * i] = odd[i % odd.size()];
-  log.positions[1].sub_scans[0].ranges_m.assign(181, std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < 60; ++i) log.scans[0].sweeps[0].ranges_m[3 * i] = odd[i % odd.size()];
+  log.scans[1].sweeps[0].ranges_m.assign(181, std::numeric_limits<float>::quiet_NaN());
   RunObserver observer;
   const MapResult result = map_log(log, {}, observer);
-  ASSERT_EQ(result.positions.size(), 2U);
-  EXPECT_EQ(result.positions[1].fragment, -1);
+  ASSERT_EQ(result.scans.size(), 2U);
+  EXPECT_EQ(result.scans[1].component, -1);
 }
 
 }  // namespace

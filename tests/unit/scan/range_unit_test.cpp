@@ -25,13 +25,13 @@ Log walk(double size, double noise_m, double metres_per_unit, bool in_whole_numb
   }
   Log log;
   for (int i = 0; i < 10; ++i) {
-    Position position = test::scan_of(world, {0.02 * i * size, 0.01 * i * size, 0.1 * i}, scanner, rng);
-    for (float& range : position.sub_scans[0].ranges_m) {
+    Scan position = test::scan_of(world, {0.02 * i * size, 0.01 * i * size, 0.1 * i}, scanner, rng);
+    for (float& range : position.sweeps[0].ranges_m) {
       const double value = range / metres_per_unit;
       range = static_cast<float>(in_whole_numbers ? std::round(value) : value);
     }
-    position.sub_scans[0].max_range_m = 60.0;
-    log.positions.push_back(std::move(position));
+    position.sweeps[0].max_range_m = 60.0;
+    log.scans.push_back(std::move(position));
   }
   return log;
 }
@@ -49,8 +49,8 @@ TEST(RangeUnit, IsRecognisedFromTheReadings) {
 
 TEST(RangeUnit, IsNotMistakenForACodeThatMostReadingsHave) {
   Log log = walk(1.0, 0.01, 1.0, false);
-  for (Position& position : log.positions) {
-    std::vector<float>& ranges_m = position.sub_scans[0].ranges_m;
+  for (Scan& position : log.scans) {
+    std::vector<float>& ranges_m = position.sweeps[0].ranges_m;
     for (std::size_t i = 0; i < ranges_m.size(); ++i) {
       if (i % 10 != 0) ranges_m[i] = 900.0F;
     }
@@ -61,22 +61,22 @@ TEST(RangeUnit, IsNotMistakenForACodeThatMostReadingsHave) {
 TEST(RangeUnit, OfALogWithoutReadingsIsTheMetre) {
   EXPECT_EQ(recognised_range_unit({}), RangeUnit::kMetre);
   Log log = walk(1.0, 0.01, 0.001, true);
-  for (Position& position : log.positions) position.sub_scans[0].ranges_m.assign(5, std::nanf(""));
+  for (Scan& position : log.scans) position.sweeps[0].ranges_m.assign(5, std::nanf(""));
   EXPECT_EQ(recognised_range_unit(log), RangeUnit::kMetre);
 }
 
 TEST(RangeUnit, ScalesReadingsAndTheLimitsThatAreInTheSameUnit) {
   Log log = walk(1.0, 0.01, 0.001, true);
-  const float before = log.positions[0].sub_scans[0].ranges_m[0];
-  log.positions[1].sub_scans[0].max_range_m = 30000.0;
-  log.positions[1].sub_scans[0].min_range_m = 20.0;
-  log.positions[2].sub_scans[0].min_range_m = 0.1;
+  const float before = log.scans[0].sweeps[0].ranges_m[0];
+  log.scans[1].sweeps[0].max_range_m = 30000.0;
+  log.scans[1].sweeps[0].min_range_m = 20.0;
+  log.scans[2].sweeps[0].min_range_m = 0.1;
   scale_ranges(log, RangeUnit::kMillimetre);
-  EXPECT_FLOAT_EQ(log.positions[0].sub_scans[0].ranges_m[0], 0.001F * before);
-  EXPECT_EQ(log.positions[0].sub_scans[0].max_range_m, 60.0) << "already in metres";
-  EXPECT_DOUBLE_EQ(log.positions[1].sub_scans[0].max_range_m, 30.0);
-  EXPECT_DOUBLE_EQ(log.positions[1].sub_scans[0].min_range_m, 0.02);
-  EXPECT_EQ(log.positions[2].sub_scans[0].min_range_m, 0.1);
+  EXPECT_FLOAT_EQ(log.scans[0].sweeps[0].ranges_m[0], 0.001F * before);
+  EXPECT_EQ(log.scans[0].sweeps[0].max_range_m, 60.0) << "already in metres";
+  EXPECT_DOUBLE_EQ(log.scans[1].sweeps[0].max_range_m, 30.0);
+  EXPECT_DOUBLE_EQ(log.scans[1].sweeps[0].min_range_m, 0.02);
+  EXPECT_EQ(log.scans[2].sweeps[0].min_range_m, 0.1);
 }
 
 }  // namespace

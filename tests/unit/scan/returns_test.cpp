@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kTiny = 1e-12;
 
-SubScan three_beams(double first_angle_rad, double angle_step_rad) {
-  SubScan scan;
+Sweep three_beams(double first_angle_rad, double angle_step_rad) {
+  Sweep scan;
   scan.first_angle_rad = first_angle_rad;
   scan.angle_step_rad = angle_step_rad;
   scan.ranges_m = {1.0F, 2.0F, 3.0F};
@@ -44,7 +44,7 @@ TEST(Returns, OfAClockwiseSensorAreOrderedCounterclockwise) {
 }
 
 TEST(Returns, OfAnUpsideDownSensorAreMirroredAndOrderedCounterclockwise) {
-  SubScan scan = three_beams(-kPi / 2, kPi / 2);
+  Sweep scan = three_beams(-kPi / 2, kPi / 2);
   scan.robot_from_sensor.roll_rad = kPi;
   const std::vector<Return> hits = returns_in_robot(scan, {});
   ASSERT_EQ(hits.size(), 3U);
@@ -53,7 +53,7 @@ TEST(Returns, OfAnUpsideDownSensorAreMirroredAndOrderedCounterclockwise) {
 }
 
 TEST(Returns, UpsideDownAndClockwiseCancelInOrder) {
-  SubScan scan = three_beams(kPi / 2, -kPi / 2);
+  Sweep scan = three_beams(kPi / 2, -kPi / 2);
   scan.robot_from_sensor.roll_rad = kPi;
   const std::vector<Return> hits = returns_in_robot(scan, {});
   ASSERT_EQ(hits.size(), 3U);
@@ -62,7 +62,7 @@ TEST(Returns, UpsideDownAndClockwiseCancelInOrder) {
 }
 
 TEST(Returns, MountAndHeadingMoveThem) {
-  SubScan scan = three_beams(0.0, 0.1);
+  Sweep scan = three_beams(0.0, 0.1);
   scan.ranges_m.resize(1);
   scan.robot_from_sensor = {0.5, 0.25, 1.0, kPi / 2, 0.0, 0.0};
   expect_point(returns_in_robot(scan, {}).at(0), 0.5, 1.25, 0);
@@ -75,7 +75,7 @@ TEST(Returns, MountAndHeadingMoveThem) {
 }
 
 TEST(Returns, OfATiltedSensorAreProjectedToTheFloor) {
-  SubScan scan = three_beams(0.0, kPi / 2);
+  Sweep scan = three_beams(0.0, kPi / 2);
   scan.ranges_m.resize(2);
   scan.robot_from_sensor.pitch_rad = 20 * kDegree;
   const std::vector<Return> hits = returns_in_robot(scan, {});
@@ -85,7 +85,7 @@ TEST(Returns, OfATiltedSensorAreProjectedToTheFloor) {
 }
 
 TEST(Returns, ASteepSensorHasNone) {
-  SubScan scan = three_beams(0.0, 0.1);
+  Sweep scan = three_beams(0.0, 0.1);
   scan.robot_from_sensor.pitch_rad = 31 * kDegree;
   EXPECT_TRUE(returns_in_robot(scan, {}).empty());
   ReturnOptions options;
@@ -97,7 +97,7 @@ TEST(Returns, ASteepSensorHasNone) {
 }
 
 TEST(Returns, LimitsOfTheLogAreOverriddenByOptions) {
-  SubScan scan = three_beams(0.0, 0.1);
+  Sweep scan = three_beams(0.0, 0.1);
   scan.min_range_m = 1.5;
   scan.max_range_m = 3.0;
   ASSERT_EQ(returns_in_robot(scan, {}).size(), 1U);
@@ -111,10 +111,10 @@ TEST(Returns, LimitsOfTheLogAreOverriddenByOptions) {
 }
 
 TEST(Returns, WhatIsNoDistanceIsNoReturn) {
-  const RangeLimits no_limits = range_limits(SubScan{}, {});
+  const RangeLimits no_limits = range_limits(Sweep{}, {});
   EXPECT_TRUE(is_return(999.0F, no_limits));
   EXPECT_FALSE(is_return(1000.0F, no_limits));  // no 2D laser measures a kilometre
-  EXPECT_FALSE(is_return(1e6F, range_limits(SubScan{}, {0.0, 1e9})));
+  EXPECT_FALSE(is_return(1e6F, range_limits(Sweep{}, {0.0, 1e9})));
   for (const float range_m : {0.0F, -1.0F, std::numeric_limits<float>::quiet_NaN(),
                               std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()}) {
     EXPECT_FALSE(is_return(range_m, no_limits)) << range_m;

@@ -18,7 +18,7 @@ namespace {
 using test::IsNearAngle;
 using test::IsNearPoint;
 
-RangeImage image_of(const SubScan& sub_scan) { return range_image(sub_scan, sub_scan_shape(sub_scan, 0, {}, {}, {})); }
+RangeImage image_of(const Sweep& sweep) { return range_image(sweep, sweep_shape(sweep, 0, {}, {}, {})); }
 
 RangeImage empty_image(double first_bearing_rad, double step_rad, std::size_t num_beams) {
   RangeImage image;
@@ -104,19 +104,19 @@ class RangeImageOfMounting : public testing::TestWithParam<Mounting> {};
 TEST_P(RangeImageOfMounting, HasEveryReturnWhereItWasSeen) {
   std::mt19937 rng(3);
   std::uniform_real_distribution<float> range_m(1.0F, 3.0F);
-  SubScan sub_scan;
-  sub_scan.first_angle_rad = GetParam().first_angle_rad;
-  sub_scan.angle_step_rad = GetParam().angle_step_rad;
-  sub_scan.max_range_m = 20.0;
-  sub_scan.robot_from_sensor = GetParam().robot_from_sensor;
-  sub_scan.nominal_heading_rad = 0.7;
-  for (int k = 0; k < 180; ++k) sub_scan.ranges_m.push_back(k % 7 == 3 ? std::nanf("") : range_m(rng));
-  const RangeImage image = image_of(sub_scan);
-  ASSERT_EQ(image.beams.size(), sub_scan.ranges_m.size());
+  Sweep sweep;
+  sweep.first_angle_rad = GetParam().first_angle_rad;
+  sweep.angle_step_rad = GetParam().angle_step_rad;
+  sweep.max_range_m = 20.0;
+  sweep.robot_from_sensor = GetParam().robot_from_sensor;
+  sweep.nominal_heading_rad = 0.7;
+  for (int k = 0; k < 180; ++k) sweep.ranges_m.push_back(k % 7 == 3 ? std::nanf("") : range_m(rng));
+  const RangeImage image = image_of(sweep);
+  ASSERT_EQ(image.beams.size(), sweep.ranges_m.size());
 
   std::size_t num_hits = 0;
   for (const RangeImage::Beam& beam : image.beams) num_hits += beam.range_m > 0.0 ? 1 : 0;
-  const std::vector<Return> returns = returns_in_robot(sub_scan, {});
+  const std::vector<Return> returns = returns_in_robot(sweep, {});
   EXPECT_EQ(num_hits, returns.size());
   for (const Return& r : returns) {
     const Point2 in_sensor_m = image.sensor_from_robot * r.p_in_robot_m;
@@ -144,8 +144,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& mounting) { return mounting.param.name; });
 
 TEST(RangeImage, NormalsOfWallsPointToTheSensor) {
-  const Position position = test::scan_of(test::uneven_room(), {0.3, -0.2, 0.4});
-  const RangeImage image = image_of(position.sub_scans[0]);
+  const Scan position = test::scan_of(test::uneven_room(), {0.3, -0.2, 0.4});
+  const RangeImage image = image_of(position.sweeps[0]);
   int num_across = 0;
   for (const RangeImage::Beam& beam : image.beams) {
     ASSERT_GT(beam.range_m, 0.0);
@@ -160,15 +160,15 @@ TEST(RangeImage, OfUnevenBeamsHasNearlyEveryBearing) {
   std::mt19937 rng(6);
   std::uniform_real_distribution<double> aside(-0.4, 0.4);
   for (const bool full_circle : {true, false}) {
-    SubScan sub_scan;
+    Sweep sweep;
     std::vector<double> angles_rad;
     for (int k = 0; k < (full_circle ? 360 : 180); ++k) {
       angles_rad.push_back((k - 90 + aside(rng)) * kDegree);
-      sub_scan.ranges_m.push_back(2.0F);
+      sweep.ranges_m.push_back(2.0F);
     }
     std::shuffle(angles_rad.begin(), angles_rad.end(), rng);
-    set_beam_angles(sub_scan, angles_rad);
-    const RangeImage image = image_of(sub_scan);
+    set_beam_angles(sweep, angles_rad);
+    const RangeImage image = image_of(sweep);
     std::size_t num_hits = 0;
     for (std::size_t k = 0; k < image.beams.size(); ++k) {
       const RangeImage::Beam& beam = image.beams[k];
@@ -183,12 +183,12 @@ TEST(RangeImage, OfUnevenBeamsHasNearlyEveryBearing) {
 }
 
 TEST(RangeImage, OfNoBeamsHasNone) {
-  SubScan sub_scan;
-  sub_scan.angle_step_rad = kDegree;
-  EXPECT_TRUE(image_of(sub_scan).beams.empty());
-  sub_scan.ranges_m = {1.0F};
-  sub_scan.angle_step_rad = 0.0;
-  EXPECT_TRUE(image_of(sub_scan).beams.empty());
+  Sweep sweep;
+  sweep.angle_step_rad = kDegree;
+  EXPECT_TRUE(image_of(sweep).beams.empty());
+  sweep.ranges_m = {1.0F};
+  sweep.angle_step_rad = 0.0;
+  EXPECT_TRUE(image_of(sweep).beams.empty());
 }
 
 /// What beam_at() means, by turning on until the bearing is there.

@@ -32,7 +32,7 @@ TEST(ScanView, HasADirectionAndWeightsForEveryPoint) {
 
 TEST(ScanView, HasNoMorePointsThanAskedFor) {
   std::mt19937 rng(1);
-  const Position position = test::scan_of(test::cluttered_room(1), {}, test::full_circle(), rng);
+  const Scan position = test::scan_of(test::cluttered_room(1), {}, test::full_circle(), rng);
   for (const int max_points : {20, 100, 240, 5000}) {
     const ScanView view = view_of(position, {}, {}, {}, {max_points});
     EXPECT_LE(view.size(), static_cast<std::size_t>(max_points));
@@ -58,7 +58,7 @@ TEST(ScanView, WeighsTheWallsOfACorridorLessThanItsEnd) {
 
 TEST(ScanView, TurnsWithItsScan) {
   std::mt19937 rng(1);
-  const Position position = test::scan_of(test::cluttered_room(1), {}, test::full_circle(), rng);
+  const Scan position = test::scan_of(test::cluttered_room(1), {}, test::full_circle(), rng);
   const ScanView view = test::view_of(position);
   const ScanView turned = test::view_of(test::turned(position, 90 * kDegree));
   ASSERT_EQ(turned.size(), view.size());
@@ -72,7 +72,7 @@ TEST(ScanView, TurnsWithItsScan) {
 
 TEST(ScanView, CountsEveryPointOfTheShapeInItsTangents) {
   std::mt19937 rng(1);
-  const Position position = test::scan_of(test::cluttered_room(1), {}, test::full_circle(), rng);
+  const Scan position = test::scan_of(test::cluttered_room(1), {}, test::full_circle(), rng);
   const double sum = [&] {
     const TangentHistogram tangents = test::view_of(position).tangents;
     return std::accumulate(tangents.begin(), tangents.end(), 0.0);
@@ -97,19 +97,19 @@ TEST(ScanView, SeesAShareOfAllDirections) {
 /// A laser at the front of a robot sees no less for it.
 TEST(ScanView, SeesAsMuchWhereverItIsMounted) {
   std::mt19937 rng(1);
-  Position position = test::scan_of(test::round_room(3.0), {}, test::half_circle(), rng);
+  Scan position = test::scan_of(test::round_room(3.0), {}, test::half_circle(), rng);
   const double here = test::view_of(position).seen_share;
-  for (SubScan& sub_scan : position.sub_scans) sub_scan.robot_from_sensor.x_m += 1.5;
+  for (Sweep& sweep : position.sweeps) sweep.robot_from_sensor.x_m += 1.5;
   EXPECT_EQ(test::view_of(position).seen_share, here);
 }
 
 TEST(ScanView, OfNoReturnsIsEmpty) {
-  for (const Position& position : {test::blind_position(), Position{}}) {
+  for (const Scan& position : {test::blind_position(), Scan{}}) {
     const ScanView view = test::view_of(position);
     EXPECT_EQ(view.size(), 0U);
     EXPECT_EQ(view.reach_m, 0.0);
     EXPECT_EQ(view.seen_share, 0.0);
-    EXPECT_EQ(view.images.size(), position.sub_scans.size());
+    EXPECT_EQ(view.images.size(), position.sweeps.size());
   }
 }
 

@@ -15,7 +15,7 @@ using test::IsNearAngle;
 using test::IsNearPoint;
 
 /// A wall 2 m ahead and `length_m` long, as one laser sees it.
-Position before_a_wall(double length_m) {
+Scan before_a_wall(double length_m) {
   const test::World wall{{{2.0, -length_m / 2}, {2.0, length_m / 2}}};
   test::Scanner scanner;
   scanner.num_beams = 3600;
@@ -63,8 +63,8 @@ TEST(Shape, AShortPieceGivesItsMiddle) {
 TEST(Shape, OfBeamsHasThePointsOfTheScan) {
   MappingOptions options = test::paper_options();
   options.shape.points = ShapePoints::kBeams;
-  const Position position = before_a_wall(2.0);
-  const std::vector<Return> returns = returns_in_robot(position.sub_scans[0], options.returns);
+  const Scan position = before_a_wall(2.0);
+  const std::vector<Return> returns = returns_in_robot(position.sweeps[0], options.returns);
   const Shape shape = test::shape_of(position, options);
   ASSERT_GT(returns.size(), 100U);
   ASSERT_EQ(shape.size(), returns.size());
@@ -87,20 +87,20 @@ TEST(Shape, DoesNotDependOnTheDensityOfBeams) {
 
 TEST(Shape, PointsKnowTheirSubScanAndComeInItsOrder) {
   test::Scanner scanner;
-  scanner.num_sub_scans = 4;
+  scanner.num_sweeps = 4;
   scanner.num_beams = 401;
   scanner.view_rad = 100 * kDegree;
   const Shape shape = test::shape_from(test::uneven_room(), {}, scanner);
-  EXPECT_EQ(shape.num_sub_scans, 4);
+  EXPECT_EQ(shape.num_sweeps, 4);
   std::vector<int> points_of(4, 0);
   int before = 0;
   for (const ShapePoint& point : shape.points) {
-    EXPECT_GE(point.sub_scan, before);
-    before = point.sub_scan;
-    ++points_of.at(static_cast<std::size_t>(point.sub_scan));
+    EXPECT_GE(point.sweep, before);
+    before = point.sweep;
+    ++points_of.at(static_cast<std::size_t>(point.sweep));
     // Each looks 50 degrees to either side of its heading.
     const double bearing_rad = std::atan2(point.p_m.y(), point.p_m.x());
-    EXPECT_LT(angle_between(bearing_rad, point.sub_scan * 90 * kDegree), 51 * kDegree);
+    EXPECT_LT(angle_between(bearing_rad, point.sweep * 90 * kDegree), 51 * kDegree);
   }
   for (const int count : points_of) EXPECT_GT(count, 10);
 }
@@ -116,12 +116,12 @@ TEST(Shape, LiesOnTheWalls) {
 }
 
 TEST(Shape, OfAPositionWithoutReturnsIsEmpty) {
-  Position blind = before_a_wall(2.0);
-  for (float& range_m : blind.sub_scans[0].ranges_m) range_m = std::nanf("");
+  Scan blind = before_a_wall(2.0);
+  for (float& range_m : blind.sweeps[0].ranges_m) range_m = std::nanf("");
   const Shape shape = test::shape_of(blind, test::paper_options());
   EXPECT_EQ(shape.size(), 0U);
-  EXPECT_EQ(shape.num_sub_scans, 1);
-  EXPECT_EQ(test::shape_of(Position{}, test::paper_options()).size(), 0U);
+  EXPECT_EQ(shape.num_sweeps, 1);
+  EXPECT_EQ(test::shape_of(Scan{}, test::paper_options()).size(), 0U);
 }
 
 TEST(MovedShape, HasMovedPointsAndTurnedTangents) {
@@ -149,11 +149,11 @@ TEST(MovedShape, AppliesTheSubScanPosesFirst) {
   const Pose2 b_from_a{2.0, 1.0, 0.5};
   const Shape result = moved(shape, b_from_a, sub_scan_poses);
   for (std::size_t i = 0; i < shape.size(); ++i) {
-    const Pose2& first = sub_scan_poses[static_cast<std::size_t>(shape.points[i].sub_scan)];
+    const Pose2& first = sub_scan_poses[static_cast<std::size_t>(shape.points[i].sweep)];
     EXPECT_THAT(result.points[i].p_m, IsNearPoint(b_from_a * (first * shape.points[i].p_m), 1e-12));
     EXPECT_THAT(result.points[i].tangent_rad,
                 IsNearAngle(shape.points[i].tangent_rad + first.theta_rad + b_from_a.theta_rad, 1e-12));
-    EXPECT_EQ(result.points[i].sub_scan, shape.points[i].sub_scan);
+    EXPECT_EQ(result.points[i].sweep, shape.points[i].sweep);
   }
 }
 

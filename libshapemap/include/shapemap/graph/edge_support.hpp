@@ -3,9 +3,9 @@
 
 namespace shapemap {
 
-/// What all other pairs of scans of two pieces say of a place, by MapEvidence. They do not tell independently of each
+/// What all other pairs of scans of two pieces say of a place, by MapScore. They do not tell independently of each
 /// other, so only the balance counts.
-struct Balance {
+struct EdgeSupport {
   double for_it = 0.0;
   double against_it = 0.0;
 

@@ -44,9 +44,9 @@ inline constexpr double kSameDeviations = 3.0;
 bool is_same_place(const PoseConstraint& one, const Pose2& other);
 
 /// For each node the lowest number among the nodes that it hangs together with.
-std::vector<std::size_t> connected_parts(std::size_t num_nodes, const std::vector<PoseConstraint>& constraints);
+std::vector<std::size_t> connected_components(std::size_t num_nodes, const std::vector<PoseConstraint>& constraints);
 
 /// Per constraint: whether nothing else joins its two nodes, neither directly nor by a detour.
-std::vector<bool> lone_constraints(std::size_t num_nodes, const std::vector<PoseConstraint>& constraints);
+std::vector<bool> bridge_edges(std::size_t num_nodes, const std::vector<PoseConstraint>& constraints);
 
 }  // namespace shapemap

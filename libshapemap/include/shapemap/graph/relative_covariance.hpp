@@ -12,10 +12,10 @@ namespace shapemap {
 
 /// How well nodes of a solved pose graph are held to each other, by the best path from one to the other alone: no
 /// better than that is certain without inverting the whole system, and what else holds them only makes it better.
-class PathCovariance {
+class RelativeCovariance {
  public:
   /// Throws std::invalid_argument for a constraint of nodes that do not exist.
-  PathCovariance(const std::vector<Pose2>& map_from_node, const std::vector<PoseConstraint>& constraints);
+  RelativeCovariance(const std::vector<Pose2>& map_from_node, const std::vector<PoseConstraint>& constraints);
 
   /// Of (x, y, theta) of node `b` in the frame of node `a`. Not finite where no path joins the two.
   Eigen::Matrix3d between(std::size_t a, std::size_t b) const;

@@ -23,7 +23,7 @@ struct EnumNames<Contradicting> {
   static constexpr std::array<std::string_view, 2> names{"fill-gaps", "as-others"};
 };
 
-struct GridMapOptions {
+struct OccupancyGridOptions {
   double resolution_m = 0.05;
   Contradicting contradicting = Contradicting::kFillGaps;
   bool draw_all = false;
@@ -43,7 +43,7 @@ struct GridMapOptions {
 };
 
 /// Occupancy probabilities on a grid. Row 0 is the top of the picture (largest y), as in ROS map_server.
-struct GridMap {
+struct OccupancyGrid {
   double resolution_m = 0.0;
   Point2 origin_m{0.0, 0.0};  ///< lower left corner of the lower left cell, in the map frame
   int width_cells = 0;
@@ -60,7 +60,7 @@ struct GridMap {
 /// drawn last. The grid ends where the map does: a few far returns that would make it many times larger lie outside,
 /// and their beams are drawn up to its rim, unless `options.draw_all`. Throws OutputError when the map would have more
 /// than 400 million cells.
-GridMap build_grid_map(const Log& log, const std::vector<PlacedPosition>& placed, const ReturnOptions& returns,
-                       const GridMapOptions& options);
+OccupancyGrid build_occupancy_grid(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns,
+                                   const OccupancyGridOptions& options);
 
 }  // namespace shapemap

@@ -17,7 +17,7 @@ struct Rays {
 };
 
 /// Of each sub-scan of a position that has any. A sensor that is tilted beyond the limit has no hits and stays out.
-std::vector<Rays> rays_of(const Log& log, const PlacedPosition& place, const ReturnOptions& options);
+std::vector<Rays> rays_of(const Log& log, const PlacedScan& place, const ReturnOptions& options);
 
 /// Beams of one laser that hit nothing, in the map frame.
 struct OpenRays {
@@ -26,7 +26,7 @@ struct OpenRays {
 };
 
 /// Of each sub-scan of a position that has any; they end after `length_m`, or as in open_ends_in_robot().
-std::vector<OpenRays> open_rays_of(const Log& log, const PlacedPosition& place, const ReturnOptions& options,
+std::vector<OpenRays> open_rays_of(const Log& log, const PlacedScan& place, const ReturnOptions& options,
                                    double length_m);
 
 }  // namespace shapemap

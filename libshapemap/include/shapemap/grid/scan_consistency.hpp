@@ -11,7 +11,7 @@
 /// place do not.
 namespace shapemap {
 
-struct AgreementOptions {
+struct ConsistencyOptions {
   double cell_m = 0.10;
   double tolerance_m = 0.10;
   int min_looks = 2;
@@ -37,11 +37,11 @@ struct AgreementOptions {
 /// One for each of `placed`, in their order. Scans that follow each other within 0.5 m and 20 degrees make one look,
 /// and none of a look is evidence about another of it: they may lean, or stand in the same crowd, together. Takes time
 /// linear in the beams, and memory by the area that was seen. Poses beyond any map are left out, with no beams known.
-std::vector<ScanAgreement> scan_agreements(const Log& log, const std::vector<PlacedPosition>& placed,
-                                           const ReturnOptions& returns, const AgreementOptions& options);
+std::vector<ScanConsistency> scan_consistencies(const Log& log, const std::vector<PlacedScan>& placed,
+                                                const ReturnOptions& returns, const ConsistencyOptions& options);
 
 /// Writes them into all placed positions, each fragment by itself.
-void judge_scans(const Log& log, const ReturnOptions& returns, const AgreementOptions& options,
-                 std::vector<Fragment>& fragments);
+void judge_consistency(const Log& log, const ReturnOptions& returns, const ConsistencyOptions& options,
+                       std::vector<Component>& components);
 
 }  // namespace shapemap

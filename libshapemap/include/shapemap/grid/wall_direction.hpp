@@ -39,10 +39,11 @@ struct WallDirection {
 /// stands before it. What a look weighs in total is limited likewise, so that a hall that was seen once through a door
 /// does not outweigh the rooms. The direction is the mode of these modulo 90 degrees, and the mean of what is within 5
 /// degrees of it.
-WallDirection wall_direction(const Log& log, const std::vector<PlacedPosition>& placed, const ReturnOptions& returns);
+WallDirection wall_direction(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns);
 
 /// Turns each fragment about its origin by the least turn that makes its walls straight. Motions between its positions
 /// stay what they are. The result is one for each fragment.
-std::vector<WallDirection> align_walls(const Log& log, const ReturnOptions& returns, std::vector<Fragment>& fragments);
+std::vector<WallDirection> align_walls(const Log& log, const ReturnOptions& returns,
+                                       std::vector<Component>& components);
 
 }  // namespace shapemap

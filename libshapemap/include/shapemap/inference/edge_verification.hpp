@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "shapemap/graph/edge_support.hpp"
 #include "shapemap/core/observer.hpp"
 #include "shapemap/core/options.hpp"
+#include "shapemap/graph/edge_support.hpp"
 #include "shapemap/loops/loop_detection.hpp"
 #include "shapemap/matching/visibility.hpp"
 
@@ -28,34 +28,34 @@ struct EdgeVerificationOptions {
 };
 
 /// What a doubtful link may be: node `link` to node `link` + 1. The first candidate is the one that is in the map.
-struct DoubtfulLink {
+struct DoubtfulEdge {
   struct Candidate {
     Pose2 a_from_b;
-    double score = 0.0;                                    ///< of these two scans alone: PoseHypothesis::score
+    double score = 0.0;                                    ///< of these two scans alone: MatchCandidate::score
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, theta), in the frame of the first node
     double best_deviation_m = 0.0;  ///< how little the two scans hold it, see best_deviation_m() in confidence.hpp
   };
   std::size_t link = 0;
   std::vector<Candidate> candidates;  ///< at least one
-  double view_shortfall = 0.0;        ///< of the two scans: see view_shortfall() in confidence.hpp
+  double insufficient_view = 0.0;     ///< of the two scans: see insufficient_view() in confidence.hpp
 };
 
-struct RevisedLink {
-  std::size_t candidate = 0;            ///< the best, or what joins; where the observer asked to stop, that of the map
-  double probability = 0.0;             ///< that it is right; 0 where nobody was asked
-  bool joins = false;                   ///< the two pieces
-  std::vector<Balance> said_by_others;  ///< of each candidate; empty where nobody was asked
-  std::vector<double> vouched;          ///< of each candidate, by a parallel link: logarithm of odds, 0 or more
+struct VerifiedEdge {
+  std::size_t candidate = 0;  ///< the best, or what joins; where the observer asked to stop, that of the map
+  double probability = 0.0;   ///< that it is right; 0 where nobody was asked
+  bool joins = false;         ///< the two pieces
+  std::vector<EdgeSupport> support_by_others;  ///< of each candidate; empty where nobody was asked
+  std::vector<double> parallel_support;        ///< of each candidate, by a parallel link: logarithm of odds, 0 or more
 };
 
-struct RevisedMap {
+struct VerifiedMap {
   std::vector<Pose2> map_from_node;
   std::vector<std::size_t> piece_of_node;  ///< pieces that were joined have the number of one of them
-  std::vector<RevisedLink> links;          ///< per doubtful link
+  std::vector<VerifiedEdge> edges;         ///< per doubtful link
 };
 
 /// Joins the pieces (nodes with the same `piece_of_node`, right to each other) at the doubtful links, the most probable
-/// first. A candidate is worth its own score and what all pairs of scans of the two pieces then say (MapEvidence), as
+/// first. A candidate is worth its own score and what all pairs of scans of the two pieces then say (MapScore), as
 /// far as they are near each other along the chain, less where its two scans hold it in no direction, and more where
 /// the map has it, or where another link that joins the same two pieces says the same: where somebody walks by, all
 /// others speak against the place, but the way there and back may be known. From that follows how probable each place
@@ -63,9 +63,9 @@ struct RevisedMap {
 /// only slides to, along a corridor, counts for it in part. What is less probable than `least_probability` is not
 /// joined; parallel links that say what was joined are joined with it, as probable as it. Stops early, with the rest of
 /// the links as they were, when the observer asks to.
-RevisedMap revise_links(const NodeViews& views, std::vector<Pose2> map_from_node,
-                        std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulLink>& doubtful,
-                        const VisibilityOptions& visibility, double least_probability, int threads,
-                        RunObserver& observer);
+VerifiedMap verify_edges(const NodeViews& views, std::vector<Pose2> map_from_node,
+                         std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulEdge>& doubtful,
+                         const VisibilityOptions& visibility, double least_probability, int threads,
+                         RunObserver& observer);
 
 }  // namespace shapemap

@@ -40,7 +40,7 @@ struct RefinedMap {
 /// Aligns all scans that see the same from where the map has them, beside `chain`, and solves for all of it; several
 /// times, since what is nearer to right aligns better. Stops between two times when the observer asks to.
 RefinedMap refine_map(const std::vector<std::shared_ptr<const ScanView>>& views, std::vector<Pose2> map_from_node,
-                      const std::vector<PoseConstraint>& chain, const HypothesisSearchOptions& search,
+                      const std::vector<PoseConstraint>& chain, const MatchSearchOptions& search,
                       const RefinementOptions& options, int threads, RunObserver& observer);
 
 }  // namespace shapemap

@@ -16,9 +16,9 @@ namespace shapemap {
 /// not have looked through. A place that is mapped twice, or two places on top of each other, tell against a map;
 /// a loop that is closed well tells for it, though not the more, the more often the place is passed. Logarithm of odds,
 /// 0 for a map in which no two stretches meet.
-class MapEvidence {
+class MapScore {
  public:
-  MapEvidence(std::vector<std::shared_ptr<const ScanView>> views, VisibilityOptions options, int threads)
+  MapScore(std::vector<std::shared_ptr<const ScanView>> views, VisibilityOptions options, int threads)
       : views_(std::move(views)), options_(options), threads_(threads) {}
 
   /// What counts of it: pairs of scans do not tell independently of each other.

@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "shapemap/graph/odometry_edge.hpp"
 #include "shapemap/core/observer.hpp"
 #include "shapemap/core/options.hpp"
+#include "shapemap/graph/odometry_edge.hpp"
 #include "shapemap/loops/loop_clusters.hpp"
 #include "shapemap/matching/visibility.hpp"
 
@@ -46,9 +46,9 @@ struct MapSearchOptions {
 };
 
 /// The map that all scans go together best in.
-struct LoopSolution {
+struct MapSolution {
   std::vector<Pose2> map_from_node;
-  std::vector<int> link_choice;        ///< per link: which alternative; kCut: none, where loops tell better
+  std::vector<int> edge_choice;        ///< per link: which alternative; kCut: none, where loops tell better
   std::vector<std::size_t> accepted;   ///< clusters that are closed, in their order
   std::vector<std::size_t> component;  ///< per node: the first node of all that it hangs together with
   double value = 0.0;                  ///< logarithm of odds of all of it, up to a constant
@@ -56,13 +56,13 @@ struct LoopSolution {
 inline constexpr int kCut = -1;
 
 /// `links[i]` joins node i to node i + 1. The value of a map is the logarithm of its odds: of the loops that it closes,
-/// of the alternatives that it takes, of how well the scans then go together (MapEvidence), less half of the squared
+/// of the alternatives that it takes, of how well the scans then go together (MapScore), less half of the squared
 /// errors of the pose graph. Loops that gain are closed, strongest first; then what contradicts the map is looked into:
 /// a strong loop that does not fit, or a doubtful alignment, may show that another alignment is wrong, or a loop.
 /// Stops early with what there is when the observer asks to.
-LoopSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<ChainLink>& links,
-                         const std::vector<LoopHypothesis>& hypotheses, const std::vector<LoopCluster>& clusters,
-                         const VisibilityOptions& visibility, const MapSearchOptions& options, int threads,
-                         RunObserver& observer);
+MapSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views,
+                        const std::vector<EdgeChoices>& edges, const std::vector<LoopCandidate>& candidates,
+                        const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
+                        const MapSearchOptions& options, int threads, RunObserver& observer);
 
 }  // namespace shapemap

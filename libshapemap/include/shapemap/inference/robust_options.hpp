@@ -24,7 +24,7 @@ struct LoopSwitch {
 
 /// How the robust method chains its alignments.
 struct FrontEndOptions {
-  double companion_weight = 0.5;
+  double three_scan_weight = 0.5;
   double doubt_below = 0.3;
   int more_references = 2;
   double split_below = 0.7;
@@ -32,7 +32,7 @@ struct FrontEndOptions {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit(Field{"companion-weight", "weight of how a pose goes with the scan before the last", 0, 10},
-          self.companion_weight);
+          self.three_scan_weight);
     visit(Field{"doubt-below", "a less probable alignment is helped by scans further back", 0, 1}, self.doubt_below);
     visit(Field{"more-references", "so many of them", 0, 10}, self.more_references);
     visit(Field{"split-below", "a less probable alignment that no loop holds splits the map instead", 0, 1},

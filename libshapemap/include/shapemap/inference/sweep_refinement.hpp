@@ -39,20 +39,20 @@ struct SweepRefinementOptions {
 };
 
 /// Views of the sub-scans of each node, in the node's frame at their nominal headings.
-using SubScanViews = std::vector<std::vector<std::shared_ptr<const ScanView>>>;
+using SweepViews = std::vector<std::vector<std::shared_ptr<const ScanView>>>;
 
-struct SubScanPoses {
+struct SweepPoses {
   std::vector<Pose2> map_from_node;
-  std::vector<std::vector<Pose2>> node_from_sub_scan;  ///< corrections: without an error, all are the identity
+  std::vector<std::vector<Pose2>> node_from_sweep;  ///< corrections: without an error, all are the identity
 };
 
 /// Gives each sub-scan a pose of its own, tied to its nominal place in its node, and aligns it to all sub-scans of near
 /// nodes of the same part that share what they see; several times. A node is where its sub-scans say in the mean, as
 /// their errors do not depend on each other. `known` holds nodes where sub-scans do not. Stops between two rounds when
 /// the observer asks to.
-SubScanPoses refine_sub_scans(const SubScanViews& views, const std::vector<Pose2>& map_from_node,
-                              const std::vector<std::size_t>& part_of_node, const std::vector<PoseConstraint>& known,
-                              const PointToLineOptions& line, const SweepRefinementOptions& options, int threads,
-                              RunObserver& observer);
+SweepPoses refine_sweeps(const SweepViews& views, const std::vector<Pose2>& map_from_node,
+                         const std::vector<std::size_t>& part_of_node, const std::vector<PoseConstraint>& known,
+                         const PointToLineOptions& line, const SweepRefinementOptions& options, int threads,
+                         RunObserver& observer);
 
 }  // namespace shapemap

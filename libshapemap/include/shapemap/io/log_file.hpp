@@ -72,7 +72,7 @@ std::string what_is_lost(const Log& log, LogFormat format);
 struct LogSummary {
   struct Sensor {
     std::string label;
-    std::size_t num_sub_scans = 0;
+    std::size_t num_sweeps = 0;
     std::size_t fewest_beams = 0;          ///< of the sub-scans that have readings
     std::size_t most_beams = 0;            ///< 0: no sub-scan has readings
     std::size_t num_without_readings = 0;  ///< sub-scans
@@ -87,7 +87,7 @@ struct LogSummary {
     double return_ratio = 0.0;  ///< share of readings that hit something
   };
   std::string format;
-  std::size_t num_positions = 0;
+  std::size_t num_scans = 0;
   double duration_s = 0.0;
   std::vector<Sensor> sensors;
   std::vector<NoReturnLevel> no_returns;  ///< of the whole log or logs that the positions are from

@@ -11,12 +11,12 @@ namespace shapemap {
 
 /// Writes .png, .pgm or .tif by the ending of `path`. With a path to draw, also the positions, and a strip above the
 /// map with a scale bar; the grey cells below stay what they are elsewhere. Throws OutputError.
-void write_map_image(const GridMap& map, const std::string& path, const std::vector<PlacedPosition>* path_to_draw);
+void write_map_image(const OccupancyGrid& map, const std::string& path, const std::vector<PlacedScan>* path_to_draw);
 
 /// The map.yaml that ROS map_server reads, for the image called `image_name` beside it.
-std::string ros_map_yaml(const GridMap& map, const std::string& image_name);
+std::string ros_map_yaml(const OccupancyGrid& map, const std::string& image_name);
 
 /// TUM lines `t x y z qx qy qz qw`, one per placed position.
-std::string tum_trajectory(const std::vector<PlacedPosition>& placed);
+std::string tum_trajectory(const std::vector<PlacedScan>& placed);
 
 }  // namespace shapemap

@@ -23,19 +23,19 @@ enum class StateOpening {
 
 /// Each alignment is handed to the system as soon as it is made, which outlives the process, and is on the disk, which
 /// outlives a power cut, about a second later. Memory holds where each alignment lies (some 50 bytes), not what it is.
-class AlignmentStoreFile : public AlignmentStore {
+class MatchCacheFile : public MatchCache {
  public:
   /// `log` has the positions that are looked at, and only those. The options that matter are those of how a position is
   /// seen and how two are aligned: with others, a file may be resumed. Throws InputError for a file that cannot be
   /// resumed, which stays as it is; OutputError for one that cannot be written or that another run has open.
-  AlignmentStoreFile(std::string path, StateOpening opening, const Log& log, const MappingOptions& options);
-  ~AlignmentStoreFile() override;
-  AlignmentStoreFile(const AlignmentStoreFile&) = delete;
-  AlignmentStoreFile& operator=(const AlignmentStoreFile&) = delete;
+  MatchCacheFile(std::string path, StateOpening opening, const Log& log, const MappingOptions& options);
+  ~MatchCacheFile() override;
+  MatchCacheFile(const MatchCacheFile&) = delete;
+  MatchCacheFile& operator=(const MatchCacheFile&) = delete;
 
-  std::optional<std::vector<PoseHypothesis>> find(const AlignmentKey& key) override;
+  std::optional<std::vector<MatchCandidate>> find(const MatchKey& key) override;
   /// Throws OutputError when it cannot be written; what is in the file by then can be resumed.
-  void keep(const AlignmentKey& key, const std::vector<PoseHypothesis>& hypotheses) override;
+  void keep(const MatchKey& key, const std::vector<MatchCandidate>& candidates) override;
 
   std::size_t num_resumed() const { return num_resumed_; }  ///< alignments that the file had when it was opened
   const std::string& warning() const { return warning_; }   ///< what was wrong with its end; empty: nothing

@@ -17,7 +17,7 @@ namespace shapemap {
 
 /// What a run had cost when so many positions of the log had been read; of several that are mapped as one, of all.
 struct Milestone {
-  std::size_t num_positions = 0;
+  std::size_t num_scans = 0;
   double wall_s = 0.0;
   double cpu_s = 0.0;
   double peak_memory_mib = 0.0;
@@ -41,8 +41,8 @@ struct LogFile {
 };
 
 /// How much of a fragment its picture shows.
-struct DrawnFragment {
-  int fragment = 0;  ///< index into MapResult::fragments
+struct DrawnComponent {
+  int component = 0;  ///< index into MapResult::fragments
   std::size_t num_returns = 0;
   std::size_t num_outside = 0;  ///< of these, those that lie outside of the picture
 };
@@ -54,12 +54,12 @@ struct RunReport {
   const MappingOptions& mapping;
   const LogReadOptions& reading;
   const SelectionOptions& selection;
-  const GridMapOptions& grid;
+  const OccupancyGridOptions& grid;
   std::vector<std::string> warnings;
   RunCosts costs;
   WallOptions walls{};
   std::vector<WallDirection> wall_directions{};  ///< of each fragment; empty when they were not asked for
-  std::vector<DrawnFragment> drawn{};
+  std::vector<DrawnComponent> drawn{};
   std::vector<SweepVerdict> sweeps{};  ///< one for each log, if any was asked about
 };
 

@@ -31,7 +31,7 @@ class TraceFile : public TraceSink {
   TraceFile(const std::string& path, TracedRun run);
   ~TraceFile() override;
 
-  void on_shape(std::size_t position_index, const std::vector<ShapePoint>& points) override;
+  void on_shape(std::size_t scan_index, const std::vector<ShapePoint>& points) override;
   void on_alignment(const TracedAlignment& alignment) override;
   void on_link(const TracedLink& link) override;
   void on_choice(const TracedChoice& choice) override;

@@ -33,7 +33,7 @@ struct TimedMotion {
 /// docs/formats.md. Throws ConfigError for a result of the paper's method, which knows no covariances.
 std::vector<TimedMotion> motions_of(const MapResult& result);
 /// Of some of the placed positions only, such as those of one log.
-std::vector<TimedMotion> motions_of(const MapResult& result, const std::vector<PlacedPosition>& placed);
+std::vector<TimedMotion> motions_of(const MapResult& result, const std::vector<PlacedScan>& placed);
 
 /// One line for each motion.
 std::string motion_lines(const std::vector<TimedMotion>& motions);

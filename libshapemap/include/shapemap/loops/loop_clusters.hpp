@@ -11,7 +11,7 @@
 namespace shapemap {
 
 /// Node `b` may be at this place in the frame of node `a`, though the chain does not say so.
-struct LoopHypothesis {
+struct LoopCandidate {
   std::size_t a = 0;
   std::size_t b = 0;  ///< the later one
   Pose2 a_from_b;
@@ -20,13 +20,13 @@ struct LoopHypothesis {
 };
 
 /// What a hypothesis counts for in a cluster, as logarithm of odds; never negative.
-double worth_of_member(const LoopHypothesis& member);
+double worth_of_member(const LoopCandidate& member);
 
 /// Hypotheses that say the same: several scans of one stretch of the way lie so about several of another.
 struct LoopCluster {
-  std::vector<LoopHypothesis> members;  ///< most probable first
-  double strength = 0.0;                ///< log odds of the best member of each node, summed
-  std::size_t num_a = 0;                ///< distinct nodes of the one stretch
+  std::vector<LoopCandidate> members;  ///< most probable first
+  double strength = 0.0;               ///< log odds of the best member of each node, summed
+  std::size_t num_a = 0;               ///< distinct nodes of the one stretch
   std::size_t num_b = 0;
 };
 
@@ -39,7 +39,7 @@ struct ClusterOptions {
 
 /// `map_from_node` is the chain, of which only short pieces are trusted: pieces with the same `piece_of_node`.
 /// Strongest first. Hypotheses that no other one supports make no cluster.
-std::vector<LoopCluster> loop_clusters(const std::vector<LoopHypothesis>& hypotheses,
+std::vector<LoopCluster> loop_clusters(const std::vector<LoopCandidate>& candidates,
                                        const std::vector<Pose2>& map_from_node,
                                        const std::vector<std::size_t>& piece_of_node, const ClusterOptions& options);
 

@@ -37,19 +37,19 @@ using NodeViews = std::vector<std::shared_ptr<const ScanView>>;
 
 /// How scans are compared to find loops.
 struct LoopSearch {
-  const HypothesisSearchOptions& matching;
+  const MatchSearchOptions& matching;
   const LoopDetectionOptions& detection;
   Execution execution;
-  AlignmentStore* store = nullptr;  ///< by the numbers of the nodes; may be null
+  MatchCache* store = nullptr;  ///< by the numbers of the nodes; may be null
 };
 
 /// Each node from `first` on, aligned to the earlier ones that look most alike. Stops with what was found by then when
 /// the observer asks to.
-std::vector<LoopHypothesis> likely_loops(const NodeViews& views, std::size_t first, const LoopSearch& search);
+std::vector<LoopCandidate> likely_loops(const NodeViews& views, std::size_t first, const LoopSearch& search);
 
 /// The few nodes before and after each of `links` (node i to node i + 1), all aligned to each other. Throws Interrupted
 /// when the observer asks to stop.
-std::vector<LoopHypothesis> bridges(const NodeViews& views, const std::vector<std::size_t>& links,
-                                    const LoopSearch& search);
+std::vector<LoopCandidate> cross_edge_matches(const NodeViews& views, const std::vector<std::size_t>& edges,
+                                              const LoopSearch& search);
 
 }  // namespace shapemap

@@ -13,32 +13,32 @@ namespace shapemap {
 /// How often surfaces of a scan lie how far from each other, and turned how against each other and against the line
 /// between them: nothing of that changes when the scan is turned or shifted. The square root of the counts, of
 /// length 1.
-inline constexpr std::size_t kSignatureDistances = 12;
-inline constexpr std::size_t kSignatureAngles = 8;
-inline constexpr std::size_t kSignatureBins = kSignatureDistances * kSignatureAngles * kSignatureAngles;
-using PlaceSignature = std::array<float, kSignatureBins>;
+inline constexpr std::size_t kDescriptorDistances = 12;
+inline constexpr std::size_t kDescriptorAngles = 8;
+inline constexpr std::size_t kDescriptorBins = kDescriptorDistances * kDescriptorAngles * kDescriptorAngles;
+using PlaceDescriptor = std::array<float, kDescriptorBins>;
 
-PlaceSignature place_signature(const ScanView& view);
+PlaceDescriptor place_descriptor(const ScanView& view);
 
 /// 0: nothing alike, 1: the same. (Bhattacharyya's coefficient.)
-double likeness(const PlaceSignature& a, const PlaceSignature& b);
+double similarity(const PlaceDescriptor& a, const PlaceDescriptor& b);
 
 struct LikelyPlace {
   std::size_t node = 0;
-  double likeness = 0.0;
+  double similarity = 0.0;
 };
 
 /// All signatures, by node.
 class PlaceIndex {
  public:
-  void add(const PlaceSignature& signature) { signatures_.push_back(signature); }
-  std::size_t size() const { return signatures_.size(); }
+  void add(const PlaceDescriptor& descriptor) { descriptors_.push_back(descriptor); }
+  std::size_t size() const { return descriptors_.size(); }
 
   /// The `count` nodes below `end` that look most like `node`, best first; of neighbours only the better one.
   std::vector<LikelyPlace> most_alike(std::size_t node, std::size_t end, std::size_t count) const;
 
  private:
-  std::vector<PlaceSignature> signatures_;
+  std::vector<PlaceDescriptor> descriptors_;
 };
 
 }  // namespace shapemap

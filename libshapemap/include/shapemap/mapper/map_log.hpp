@@ -16,6 +16,6 @@ namespace shapemap {
 /// it those that it makes. Throws ConfigError for bad options, and InputError for a
 /// position that no sensor can have recorded (scan/plausibility.hpp); never throws for scans that do not match.
 MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink = nullptr,
-                  AlignmentStore* store = nullptr);
+                  MatchCache* store = nullptr);
 
 }  // namespace shapemap

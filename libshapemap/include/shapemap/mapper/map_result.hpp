@@ -14,16 +14,16 @@ namespace shapemap {
 inline constexpr std::size_t kNoReference = static_cast<std::size_t>(-1);
 
 /// What became of one position of the log, whether placed or not.
-struct PositionResult {
-  std::size_t position_index = 0;
+struct ScanResult {
+  std::size_t scan_index = 0;
   double timestamp_s = 0.0;
   std::size_t session = 0;  ///< the recording that it is from
-  int fragment = -1;        ///< index into MapResult::fragments; -1: no usable shape, in no fragment
-  bool starts_fragment = false;
-  Alignment alignment;                   ///< against the scans before it; meaningless for the first position
+  int component = -1;       ///< index into MapResult::fragments; -1: no usable shape, in no fragment
+  bool starts_component = false;
+  ScanMatch alignment;                   ///< against the scans before it; meaningless for the first position
   std::size_t reference = kNoReference;  ///< the position that it is to, where that is not the last keyframe before it
   /// Loops hold this position where it is, even if that alignment was wrong.
-  bool held_by_loops = false;
+  bool loop_constrained = false;
   bool is_keyframe = true;
   std::string reason;  ///< empty when aligned without doubt; else one line that says why not
 };
@@ -34,23 +34,23 @@ struct StageTimes {
   double align_s = 0.0;
   double icp_s = 0.0;
   double decoupled_icp_s = 0.0;
-  double loops_s = 0.0;      ///< to know places again, and to solve for the map
-  double agreement_s = 0.0;  ///< to see how each scan goes with the rest
+  double loops_s = 0.0;        ///< to know places again, and to solve for the map
+  double consistency_s = 0.0;  ///< to see how each scan goes with the rest
 };
 
 struct MapResult {
-  std::vector<Fragment> fragments;        ///< in the order of the log
-  std::vector<PositionResult> positions;  ///< one per position of the log that was looked at
-  std::vector<ClosedLoop> loops;          ///< strongest first
-  int largest_fragment = -1;              ///< the fragment that makes the map; -1: none
+  std::vector<Component> components;  ///< in the order of the log
+  std::vector<ScanResult> scans;      ///< one per position of the log that was looked at
+  std::vector<ClosedLoop> loops;      ///< strongest first
+  int largest_component = -1;         ///< the fragment that makes the map; -1: none
   StageTimes times;
   bool interrupted = false;  ///< the observer asked to stop; the rest of the log was not looked at
 
   /// Positions of the largest fragment; empty when there is none.
-  const std::vector<PlacedPosition>& placed() const;
+  const std::vector<PlacedScan>& placed() const;
 
   /// One line that says why a position is not in the map; empty for one that is.
-  std::string why_not_in_map(const PositionResult& position) const;
+  std::string why_not_in_map(const ScanResult& position) const;
 };
 
 }  // namespace shapemap

@@ -42,7 +42,7 @@ struct MappingOptions {
   ShapeOptions shape;
   RobustOptions robust;
   AlignOptions align;  ///< of the paper's method
-  AgreementOptions agreement;
+  ConsistencyOptions consistency;
   RunOptions run;
 
   /// Calls `visit(title, group)` for each group; `group` is a struct with `fields`.
@@ -54,7 +54,7 @@ struct MappingOptions {
     visit("Shape", self.shape);
     visit("Robust method: views", self.robust.matcher.view);
     visit("Robust method: translation votes", self.robust.matcher.search.voting);
-    visit("Robust method: hypotheses", self.robust.matcher.search.hypotheses);
+    visit("Robust method: hypotheses", self.robust.matcher.search.candidates);
     visit("Robust method: visibility", self.robust.matcher.search.visibility);
     visit("Robust method: refinement", self.robust.matcher.search.line);
     visit("Robust method: confidence", self.robust.matcher.confidence);
@@ -75,7 +75,7 @@ struct MappingOptions {
     visit("Paper's method: overlap", self.align.overlap);
     visit("Paper's method: ICP", self.align.icp);
     visit("Paper's method: trust", self.align.trust);
-    visit("Agreement of scans with the map", self.agreement);
+    visit("Agreement of scans with the map", self.consistency);
     visit("Run", self.run);
   }
 };

@@ -21,6 +21,6 @@ struct TurnComparison {
 /// Compares the turns between successive placed positions of `log` that are too large to be noise. Scans of a laser
 /// that is upside down, or counts its beams clockwise, make a map that is right but for being mirrored: nothing else
 /// tells.
-TurnComparison compare_turns(const Log& log, const std::vector<PlacedPosition>& placed);
+TurnComparison compare_turns(const Log& log, const std::vector<PlacedScan>& placed);
 
 }  // namespace shapemap

@@ -15,17 +15,17 @@ namespace shapemap {
 
 /// One of the scans that make a partial map. Its points are those of its position, corrected and moved.
 struct TracedTarget {
-  std::size_t position_index = 0;
+  std::size_t scan_index = 0;
   std::size_t num_points = 0;
   Pose2 ref_from_robot;
-  std::vector<Pose2> robot_from_sub_scan;
+  std::vector<Pose2> robot_from_sweep;
 };
 
 /// An alignment by the paper's method; its reference is the last of the targets.
 struct TracedAlignment {
   std::size_t query_index = 0;
   std::vector<TracedTarget> targets;
-  const Alignment& alignment;
+  const ScanMatch& alignment;
   const AlignTrace& steps;
 };
 
@@ -33,29 +33,29 @@ struct TracedAlignment {
 struct TracedLink {
   std::size_t reference_index = 0;
   std::size_t query_index = 0;
-  const std::vector<PoseHypothesis>& hypotheses;
-  std::size_t num_own = 0;      ///< so many, the first, are the best first; the rest is by way of scans further back
-  double view_shortfall = 0.0;  ///< view_shortfall() of the two scans; 0 where a motion was expected
+  const std::vector<MatchCandidate>& candidates;
+  std::size_t num_own = 0;         ///< so many, the first, are the best first; the rest is by way of scans further back
+  double insufficient_view = 0.0;  ///< insufficient_view() of the two scans; 0 where a motion was expected
 };
 
 /// What it chose, looking at the whole log.
 struct TracedChoice {
   std::size_t reference_index = 0;
   std::size_t query_index = 0;
-  std::size_t alternative = 0;  ///< index into the hypotheses of the link, or of its revision where there is one
+  std::size_t candidate = 0;  ///< index into the hypotheses of the link, or of its revision where there is one
   double margin = 0.0;
 };
 
-/// How a link that was in doubt was judged by all scans of both sides: see revise_links().
+/// How a link that was in doubt was judged by all scans of both sides: see verify_edges().
 struct TracedRevision {
   std::size_t reference_index = 0;
   std::size_t query_index = 0;
-  const std::vector<PoseHypothesis>& hypotheses;  ///< those of the link, and then what was looked for since
-  const std::vector<Balance>& said_by_others;     ///< of each hypothesis
-  const std::vector<double>& vouched;             ///< of each hypothesis
-  std::size_t in_map = 0;                         ///< the hypothesis that the map had until then
-  std::size_t alternative = 0;                    ///< the best
-  double probability = 0.0;                       ///< that it is right
+  const std::vector<MatchCandidate>& candidates;      ///< those of the link, and then what was looked for since
+  const std::vector<EdgeSupport>& support_by_others;  ///< of each hypothesis
+  const std::vector<double>& parallel_support;        ///< of each hypothesis
+  std::size_t in_map = 0;                             ///< the hypothesis that the map had until then
+  std::size_t candidate = 0;                          ///< the best
+  double probability = 0.0;                           ///< that it is right
 };
 
 /// Calls come from one thread; shapes and alignments come in the order of the log, and what is referred to is gone
@@ -63,7 +63,7 @@ struct TracedRevision {
 struct TraceSink {
   virtual ~TraceSink() = default;
   /// All that the method looks at of a position, in the robot's frame.
-  virtual void on_shape(std::size_t /*position_index*/, const std::vector<ShapePoint>& /*points*/) {}
+  virtual void on_shape(std::size_t /*scan_index*/, const std::vector<ShapePoint>& /*points*/) {}
   virtual void on_alignment(const TracedAlignment& /*alignment*/) {}
   virtual void on_link(const TracedLink& /*link*/) {}
   /// In order, after all links.

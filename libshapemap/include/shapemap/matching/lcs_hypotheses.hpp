@@ -11,10 +11,10 @@ namespace shapemap {
 
 /// Translations by the paper's own means: all segments of a longest common subsequence, each by its mean, and not only
 /// the best of them. Made once for a pair and used for every rotation.
-class ShapeHypotheses {
+class LcsHypotheses {
  public:
   /// Keeps references to both.
-  ShapeHypotheses(const ScanView& reference, const ScanView& query);
+  LcsHypotheses(const ScanView& reference, const ScanView& query);
 
   /// Translations of the query turned by `rotation_rad`, those of the longest segments first.
   std::vector<Point2> translations(double rotation_rad, int max_count) const;

@@ -13,22 +13,22 @@ double log_odds_of(double probability);
 double probability_of(double log_odds);
 
 /// Probability that `best` is right. `margin` is its score above that of the best other place.
-double match_probability(const PoseHypothesis& best, double margin);
+double match_probability(const MatchCandidate& best, double margin);
 
 /// The same of two scans that follow each other, by what match_probability() says: it allows for scans of two different
-/// places, which neighbours are not. See view_shortfall().
-double probability_of_neighbours(double match_probability, double view_shortfall);
+/// places, which neighbours are not. See insufficient_view().
+double odometry_probability(double match_probability, double insufficient_view);
 
 /// How far the one of two scans that sees less falls short of 0.45 of all directions (ScanView::seen_share). The less
 /// each sees, the likelier the two share nothing that tells where they are, and the true place is none of those that
 /// are found. What that is worth is known of lasers with 100 degrees of view and more.
-double view_shortfall(const ScanView& a, const ScanView& b);
+double insufficient_view(const ScanView& a, const ScanView& b);
 
 /// The margin that stands for "there is no other place".
 inline constexpr double kFullMargin = 20.0;
 
 /// The margin of the first of distinct hypotheses, best first.
-double lead_of_first(const std::vector<PoseHypothesis>& hypotheses);
+double lead_of_first(const std::vector<MatchCandidate>& candidates);
 
 /// What a point tells of a pose by its line.
 struct LineNoise {

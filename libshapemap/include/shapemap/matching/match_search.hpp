@@ -11,7 +11,7 @@
 
 namespace shapemap {
 
-struct HypothesisOptions {
+struct CandidateOptions {
   int rotation_peaks = 8;
   double all_rotations_below = 0.0;
   double all_rotations_step_rad = 5 * kDegree;
@@ -33,15 +33,15 @@ struct HypothesisOptions {
   }
 };
 
-struct HypothesisSearchOptions {
+struct MatchSearchOptions {
   VotingOptions voting;
-  HypothesisOptions hypotheses;
+  CandidateOptions candidates;
   VisibilityOptions visibility;
   PointToLineOptions line;
 };
 
 /// A pose that the query scan may have, and how well the two scans then go together.
-struct PoseHypothesis {
+struct MatchCandidate {
   Pose2 ref_from_query;
   double score = 0.0;  ///< visibility_score(), less for a poor fit
   Visibility visibility;
@@ -50,26 +50,26 @@ struct PoseHypothesis {
 
 /// Distinct poses that `query` may have in the frame of `reference`, any heading and offset, best first. Empty when one
 /// of them has no points.
-std::vector<PoseHypothesis> pose_hypotheses(const ScanView& reference, const ScanView& query,
-                                            const HypothesisSearchOptions& options);
+std::vector<MatchCandidate> find_candidates(const ScanView& reference, const ScanView& query,
+                                            const MatchSearchOptions& options);
 
 /// The same for a scan that most likely follows the other as `habit` says, with more effort: what is unusual scores
 /// less, and is less likely to be looked into.
-std::vector<PoseHypothesis> usual_hypotheses(const ScanView& reference, const ScanView& query,
-                                             const HypothesisSearchOptions& options, const MotionHabit& habit);
+std::vector<MatchCandidate> find_usual_candidates(const ScanView& reference, const ScanView& query,
+                                                  const MatchSearchOptions& options, const MotionPrior& prior);
 
 /// Refines a pose and judges it.
-PoseHypothesis refined_hypothesis(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
-                                  const HypothesisSearchOptions& options);
+MatchCandidate refined_candidate(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
+                                 const MatchSearchOptions& options);
 
 /// Judges a pose as it is.
-PoseHypothesis hypothesis_at(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
-                             const HypothesisSearchOptions& options);
+MatchCandidate candidate_at(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
+                            const MatchSearchOptions& options);
 
 /// The best of `hypotheses`, one for each place; at most `count`.
-std::vector<PoseHypothesis> best_distinct(std::vector<PoseHypothesis> hypotheses, int count);
+std::vector<MatchCandidate> best_distinct(std::vector<MatchCandidate> candidates, int count);
 
 /// Adds `pose` unless its place is known: a place twice would be its own rival, and leave no margin between the two.
-void add_if_new(const PoseHypothesis& pose, std::vector<PoseHypothesis>& distinct);
+void add_if_new(const MatchCandidate& pose, std::vector<MatchCandidate>& distinct);
 
 }  // namespace shapemap

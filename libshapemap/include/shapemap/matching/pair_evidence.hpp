@@ -6,6 +6,6 @@
 namespace shapemap {
 
 /// Whether two scans at a pose show the same so well that one can replace the other.
-bool can_stand_for(const PoseHypothesis& pose);
+bool shows_the_same(const MatchCandidate& pose);
 
 }  // namespace shapemap

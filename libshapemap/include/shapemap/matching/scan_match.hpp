@@ -18,7 +18,7 @@ inline constexpr Pose2 kNoPose{std::numeric_limits<double>::quiet_NaN(), std::nu
                                std::numeric_limits<double>::quiet_NaN()};
 
 /// Whether an alignment can be trusted, and if not, why.
-enum class AlignStatus {
+enum class MatchStatus {
   kOk,
   kNoShape,                ///< one of the two has too few shape points
   kNoCorrespondences,      ///< no similar structure, or the filters dropped all of it
@@ -29,7 +29,7 @@ enum class AlignStatus {
 };
 
 template <>
-struct EnumNames<AlignStatus> {
+struct EnumNames<MatchStatus> {
   static constexpr std::array<std::string_view, 7> names{
       "ok",        "no-shape",  "no-correspondences", "too-few-correspondences", "too-little-overlap",
       "ambiguous", "degenerate"};
@@ -52,9 +52,9 @@ struct RankedPose {
   int partners = 0;    ///< query points that have one
 };
 
-/// The answer of align() and robust_align(). `ref_from_query` takes the query scan to the frame of the reference.
-struct Alignment {
-  AlignStatus status = AlignStatus::kNoShape;
+/// The answer of align() and match_scans(). `ref_from_query` takes the query scan to the frame of the reference.
+struct ScanMatch {
+  MatchStatus status = MatchStatus::kNoShape;
   std::string reason;              ///< one line with the numbers behind `status`; empty when ok
   Pose2 ref_from_query = kNoPose;  ///< NaN unless has_pose()
 
@@ -73,15 +73,15 @@ struct Alignment {
   int overlap = 0;                       ///< scan overlap after the last step: query points with a partner
   double overlap_ratio = 0.0;            ///< the same as a share of the query's points
   int icp_iterations = 0;
-  std::vector<Pose2> query_from_sub_scan;  ///< corrections by decoupled ICP, one per sub-scan; identity without
+  std::vector<Pose2> query_from_sweep;  ///< corrections by decoupled ICP, one per sub-scan; identity without
 
   /// Seconds spent per stage.
   double match_s = 0.0;
   double icp_s = 0.0;
   double decoupled_icp_s = 0.0;
 
-  bool ok() const { return status == AlignStatus::kOk; }
-  bool has_pose() const { return ok() || status == AlignStatus::kAmbiguous || status == AlignStatus::kDegenerate; }
+  bool ok() const { return status == MatchStatus::kOk; }
+  bool has_pose() const { return ok() || status == MatchStatus::kAmbiguous || status == MatchStatus::kDegenerate; }
 };
 
 }  // namespace shapemap

@@ -26,20 +26,20 @@ struct ConfidenceOptions {
 
 struct MatcherOptions {
   ViewOptions view;
-  HypothesisSearchOptions search;
+  MatchSearchOptions search;
   ConfidenceOptions confidence;
 };
 
 /// The pose of `query` in the frame of `reference`, from shape alone. Never throws for scans that do not match: see
 /// Alignment::status.
-Alignment robust_align(const ScanView& reference, const ScanView& query, const MatcherOptions& options);
+ScanMatch match_scans(const ScanView& reference, const ScanView& query, const MatcherOptions& options);
 
 /// What is told of a hypothesis.
-RankedPose ranked_pose(const PoseHypothesis& pose);
+RankedPose ranked_pose(const MatchCandidate& pose);
 
 /// The verdict on `hypotheses`, in any order, of which number `chosen` is taken; `margin` is what it is better by than
 /// any other place. What is known better than by the two scans is the `probability`.
-Alignment judged(const std::vector<PoseHypothesis>& hypotheses, std::size_t chosen, double margin,
+ScanMatch judged(const std::vector<MatchCandidate>& candidates, std::size_t chosen, double margin,
                  const ConfidenceOptions& options, std::optional<double> probability = {});
 
 }  // namespace shapemap

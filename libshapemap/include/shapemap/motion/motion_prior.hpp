@@ -11,10 +11,10 @@ namespace shapemap {
 /// How a sensor moves from scan to scan, learned from motions that are known: how far, in which direction of its own,
 /// and how much it turns, each by itself (kernel density estimates). Most robots go forward by much the same step; a
 /// lidar that is carried does not, and little is then learned.
-class MotionHabit {
+class MotionPrior {
  public:
-  MotionHabit() : MotionHabit(std::vector<Pose2>{}) {}
-  explicit MotionHabit(const std::vector<Pose2>& known_motions);
+  MotionPrior() : MotionPrior(std::vector<Pose2>{}) {}
+  explicit MotionPrior(const std::vector<Pose2>& known_motions);
 
   /// As logarithm of odds, how much less usual a motion is than the most usual one. Never much: at most what so many
   /// known motions can tell of one that was not among them; 0 where none are known.

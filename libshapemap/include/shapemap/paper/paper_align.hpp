@@ -111,9 +111,9 @@ std::vector<double> rotation_grid(const RotationOptions& options);
 
 /// The pose of `query` in the frame of `target`, starting from the same heading. Never throws for scans that do not
 /// match: see Alignment::status. `trace`, if given, receives everything that led to it.
-Alignment align(const PartialMap& target, const Shape& query, const AlignOptions& options, AlignTrace* trace = nullptr);
+ScanMatch align(const PartialMap& target, const Shape& query, const AlignOptions& options, AlignTrace* trace = nullptr);
 
 /// The same against a single scan.
-Alignment align(const Shape& reference, const Shape& query, const AlignOptions& options, AlignTrace* trace = nullptr);
+ScanMatch align(const Shape& reference, const Shape& query, const AlignOptions& options, AlignTrace* trace = nullptr);
 
 }  // namespace shapemap

@@ -25,7 +25,7 @@ struct MountPose {
 /// One sweep of one laser. Angles are in the sensor's plane: 0 is the sensor's x axis, counterclockwise is positive.
 /// Evenly spaced beams are the compact case: beam i points at `first_angle_rad + i * angle_step_rad`, and the step is
 /// negative for a clockwise sensor. Other beams have an angle each; set_beam_angles() sets them.
-struct SubScan {
+struct Sweep {
   std::vector<float> ranges_m;  ///< as recorded; NaN where the sensor itself says "no return"
   double first_angle_rad = 0.0;
   double angle_step_rad = 0.0;          ///< of uneven beams, the typical one
@@ -52,9 +52,9 @@ struct SubScan {
 };
 
 /// One place where the robot stood: the sub-scans taken there make one complete scan.
-struct Position {
+struct Scan {
   double timestamp_s = 0.0;  ///< as in the log
-  std::vector<SubScan> sub_scans;
+  std::vector<Sweep> sweeps;
   std::optional<Pose2> reference_pose;  ///< surveyed pose, if the log has one; never used for mapping
   /// What the robot itself took for its heading, if the log has it; never used for mapping, only to tell whether the
   /// laser's scans are mirrored.
@@ -72,7 +72,7 @@ struct NoReturnLevel {
 
 struct Log {
   std::string format;  ///< "rawlog", "carmen", "nist" or "bare"
-  std::vector<Position> positions;
+  std::vector<Scan> scans;
   /// Of several logs in one: positions, in order, at which one starts that was recorded by itself; without the first.
   std::vector<std::size_t> starts;
   std::vector<std::string> warnings;      ///< what was odd but could be read, one line each

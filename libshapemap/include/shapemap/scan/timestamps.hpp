@@ -28,6 +28,6 @@ struct TimestampRepairs {
 /// - Up to ten times in a row that do not fit into the sequence of the others are interpolated.
 /// - Elsewhere a clock was set back: the order of the log stays, and times go on by the usual step.
 /// - Of times that repeat, the first stays; the others are spread up to the next time.
-TimestampRepairs mend_timestamps(std::vector<Position>& positions);
+TimestampRepairs mend_timestamps(std::vector<Scan>& scans);
 
 }  // namespace shapemap

@@ -30,6 +30,6 @@ struct RangeImage {
 
 /// The image of a sub-scan whose points and polylines are `shape`. Uneven beams are put on even bearings, one typical
 /// step apart.
-RangeImage range_image(const SubScan& sub_scan, const SubScanShape& shape);
+RangeImage range_image(const Sweep& sweep, const SweepShape& shape);
 
 }  // namespace shapemap

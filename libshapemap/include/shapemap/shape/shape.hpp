@@ -43,29 +43,29 @@ struct ShapeOptions {
 struct ShapePoint {
   Point2 p_m{0.0, 0.0};
   double tangent_rad = 0.0;  ///< 0 to 360 degrees: oriented along the scan order (counterclockwise about the sensor)
-  int sub_scan = 0;          ///< index into Position::sub_scans
+  int sweep = 0;             ///< index into Position::sweeps
 };
 
 /// The ordered shape points of one position, in the robot's frame: sub-scan after sub-scan, each counterclockwise.
 struct Shape {
   std::vector<ShapePoint> points;
-  int num_sub_scans = 0;
+  int num_sweeps = 0;
 
   std::size_t size() const { return points.size(); }
 };
 
 /// Polylines of one sub-scan (kept for figures) and the shape points that follow from them.
-struct SubScanShape {
+struct SweepShape {
   std::vector<ScanPoint> scan_points;
   PolylineFit polylines;
   std::vector<ShapePoint> shape_points;
 };
 
-SubScanShape sub_scan_shape(const SubScan& sub_scan, int sub_scan_index, const ReturnOptions& returns,
-                            const PolylineOptions& polylines, const ShapeOptions& options);
+SweepShape sweep_shape(const Sweep& sweep, int sub_scan_index, const ReturnOptions& returns,
+                       const PolylineOptions& polylines, const ShapeOptions& options);
 
 /// The whole position. Never fails: a position without returns has no points.
-Shape shape_of(const Position& position, const ReturnOptions& returns, const PolylineOptions& polylines,
+Shape shape_of(const Scan& position, const ReturnOptions& returns, const PolylineOptions& polylines,
                const ShapeOptions& options);
 
 /// The same shape seen from another frame; `sub_scan_poses` (one per sub-scan, or empty) are applied first.
