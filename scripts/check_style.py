@@ -43,7 +43,10 @@ CONFINEMENTS = (
     Confinement(
         "MRPT",
         "mrpt/*",
-        ("libshapemap/src/io/rawlog*.cpp", "libshapemap/src/grid/occupancy_grid.cpp", "apps/shapemap-baselines/mrpt_*.cpp"),
+        (
+            *("libshapemap/src/io/rawlog*.cpp", "libshapemap/src/grid/occupancy_grid.cpp"),
+            "apps/shapemap-baselines/mrpt_*.cpp",
+        ),
     ),
     Confinement("OpenCV", "opencv2/*", ("libshapemap/src/io/map_image.cpp",)),
     Confinement("CGAL", "CGAL/*", ("libshapemap/src/shape/simplify.cpp",)),

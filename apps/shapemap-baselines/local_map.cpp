@@ -71,9 +71,9 @@ class CountGrid {
 
 }  // namespace
 
-std::vector<Beam> beams_of(const Scan& position, const ReturnOptions& returns, double max_range_m) {
+std::vector<Beam> beams_of(const Scan& scan, const ReturnOptions& returns, double max_range_m) {
   std::vector<Beam> beams;
-  for (const Sweep& sweep : position.sweeps) {
+  for (const Sweep& sweep : scan.sweeps) {
     const Point2 from_m = robot_from_sensor2(sweep).translation();
     for (const Return& hit : returns_in_robot(sweep, returns)) {
       if (hit.range_m <= max_range_m) beams.push_back({from_m, hit.p_in_robot_m});

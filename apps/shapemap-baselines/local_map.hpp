@@ -16,7 +16,7 @@ struct Beam {
 };
 
 /// The beams of all sub-scans of a position that are not longer than `max_range_m`.
-std::vector<Beam> beams_of(const Scan& position, const ReturnOptions& returns, double max_range_m);
+std::vector<Beam> beams_of(const Scan& scan, const ReturnOptions& returns, double max_range_m);
 
 /// What the latest scans have seen, by counting: each cell's occupancy is the share of the beams that ended there among
 /// those that came so far, so that what walked away fades.

@@ -19,7 +19,7 @@ Eigen::Matrix3d covariance_of(double sigma_m, double sigma_rad) {
 
 /// For each position the line with its time, or null. Both are in the order of the log; a log may repeat a time.
 template <class Timed>
-std::vector<const Timed*> by_position(const Log& log, const std::vector<Timed>& lines) {
+std::vector<const Timed*> by_scan(const Log& log, const std::vector<Timed>& lines) {
   std::vector<const Timed*> found(log.scans.size(), nullptr);
   std::size_t at = 0;
   for (const Timed& line : lines) {
@@ -44,7 +44,7 @@ using KnownMotions = std::vector<std::optional<Motion>>;
 KnownMotions from_poses(const Log& log, const std::string& path, const MotionOptions& options) {
   const std::vector<TimedPose> poses = read_tum_trajectory(path);
   KnownMotions motions(log.scans.size());
-  const std::vector<const TimedPose*> found = by_position(log, poses);
+  const std::vector<const TimedPose*> found = by_scan(log, poses);
   const TimedPose* last = nullptr;
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (!found[i]) continue;
@@ -59,7 +59,7 @@ KnownMotions from_poses(const Log& log, const std::string& path, const MotionOpt
 
 void add_covariances(const Log& log, const MotionSources& sources, KnownMotions& motions) {
   const std::vector<TimedMotion> lines = read_motions(sources.covariances_path);
-  const std::vector<const TimedMotion*> found = by_position(log, lines);
+  const std::vector<const TimedMotion*> found = by_scan(log, lines);
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (!found[i] || found[i] == &lines.front()) continue;  // the first one has no motion
     if (sources.poses_path.empty()) motions[i] = Motion{found[i]->previous_from_this, found[i]->covariance};

@@ -57,14 +57,14 @@ class MrptIcp : public SlamMethod {
     builder_.initialize();
   }
 
-  void add(const Scan& position, const Motion& motion) override {
+  void add(const Scan& scan, const Motion& motion) override {
     if (!poses_.empty()) odometry_from_robot_ = odometry_from_robot_ * motion.previous_from_this;
     auto odometry = mrpt::obs::CObservationOdometry::Create();
     odometry->timestamp = time_of(2 * poses_.size());
     odometry->odometry = {odometry_from_robot_.x_m, odometry_from_robot_.y_m, odometry_from_robot_.theta_rad};
     builder_.processObservation(odometry);
 
-    if (const auto points = points_of(position)) builder_.processObservation(points);
+    if (const auto points = points_of(scan)) builder_.processObservation(points);
     const mrpt::poses::CPose3D pose = builder_.getCurrentPoseEstimation()->getMeanVal();
     poses_.push_back({pose.x(), pose.y(), pose.yaw()});
   }
@@ -73,9 +73,9 @@ class MrptIcp : public SlamMethod {
 
  private:
   /// All sub-scans together, so that a position is aligned as one; null when nothing was hit.
-  mrpt::obs::CObservationPointCloud::Ptr points_of(const Scan& position) const {
+  mrpt::obs::CObservationPointCloud::Ptr points_of(const Scan& scan) const {
     auto points = mrpt::maps::CSimplePointsMap::Create();
-    for (const Sweep& sweep : position.sweeps) {
+    for (const Sweep& sweep : scan.sweeps) {
       for (const Return& hit : returns_in_robot(sweep, returns_)) {
         points->insertPoint(static_cast<float>(hit.p_in_robot_m.x()), static_cast<float>(hit.p_in_robot_m.y()));
       }

@@ -94,8 +94,8 @@ mrpt::obs::CActionRobotMovement3D action_of(const Motion& motion) {
   return action;
 }
 
-mrpt::obs::CSensoryFrame frame_of(const Scan& position) {
-  const std::string bytes = frame_to_rawlog(position);
+mrpt::obs::CSensoryFrame frame_of(const Scan& scan) {
+  const std::string bytes = frame_to_rawlog(scan);
   mrpt::io::CMemoryStream stream;
   stream.assignMemoryNotOwn(bytes.data(), bytes.size());
   mrpt::obs::CSensoryFrame frame;
@@ -111,7 +111,7 @@ class MrptRbpf : public SlamMethod {
     filter_.initialize();
   }
 
-  void add(const Scan& position, const Motion& motion) override {
+  void add(const Scan& scan, const Motion& motion) override {
     const Pose2 way = entries_.empty() ? Pose2{} : motion.previous_from_this;
     since_update_ = entries_.empty() ? Motion{} : compose(since_update_, motion);
     if (!entries_.empty() && is_small(since_update_)) {
@@ -123,7 +123,7 @@ class MrptRbpf : public SlamMethod {
     mrpt::obs::CActionCollection actions;
     actions.insert(action_of(since_update_));
     since_update_ = {};
-    mrpt::obs::CSensoryFrame frame = frame_of(position);
+    mrpt::obs::CSensoryFrame frame = frame_of(scan);
     const std::size_t length_before = path_length();
     filter_.processActionObservation(actions, frame);
     // The filter waits with a scan that hit nothing, and adds its motion to the next one.

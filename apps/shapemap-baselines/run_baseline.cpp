@@ -35,8 +35,8 @@ void check_paths(const Arguments& arguments) {
 /// What shapemap takes for no return is none for the other methods either. Beams that hit nothing can still be told
 /// from those whose reading means nothing, for the picture.
 void drop_non_returns(Log& log, const ReturnOptions& options) {
-  for (Scan& position : log.scans) {
-    for (Sweep& sweep : position.sweeps) {
+  for (Scan& scan : log.scans) {
+    for (Sweep& sweep : scan.sweeps) {
       const RangeLimits limits = range_limits(sweep, options);
       for (float& range_m : sweep.ranges_m) {
         if (is_return(range_m, limits)) continue;
@@ -74,8 +74,8 @@ std::vector<PlacedScan> place_all(const Log& log, const std::vector<Motion>& mot
 
   std::vector<PlacedScan> placed;
   for (const Pose2& pose : method->map_from_robot()) {
-    const Scan& position = log.scans[placed.size()];
-    placed.push_back({placed.size(), position.timestamp_s, pose, std::vector<Pose2>(position.sweeps.size())});
+    const Scan& scan = log.scans[placed.size()];
+    placed.push_back({placed.size(), scan.timestamp_s, pose, std::vector<Pose2>(scan.sweeps.size())});
   }
   if (placed.empty()) throw InputError(arguments.log_path + ": no position could be placed; nothing written");
   const Pose2 first_from_map = inverse(placed.front().map_from_robot);
@@ -116,7 +116,7 @@ int run(const Arguments& arguments) {
   check_paths(arguments);
   Log log = read_log(arguments.log_path, arguments.format, settings.reading);
   const std::vector<Motion> motions = motions_for(log, settings.selection, arguments.motions, settings.motion);
-  log = select_positions(std::move(log), settings.selection);
+  log = select_scans(std::move(log), settings.selection);
   drop_non_returns(log, settings.returns);
   std::vector<std::string> warnings = log.warnings;
 

@@ -30,7 +30,7 @@ class SlamMethod {
   SlamMethod& operator=(const SlamMethod&) = delete;
 
   /// `motion` is not looked at for the first position. Throws CannotGoOn.
-  virtual void add(const Scan& position, const Motion& motion) = 0;
+  virtual void add(const Scan& scan, const Motion& motion) = 0;
   /// The poses of all positions so far, as they are believed now, in a frame of the method's own.
   virtual std::vector<Pose2> map_from_robot() const = 0;
 };

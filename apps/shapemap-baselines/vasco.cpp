@@ -39,8 +39,8 @@ class Vasco : public SlamMethod {
     validate(options);
   }
 
-  void add(const Scan& position, const Motion& motion) override {
-    const std::vector<Beam> beams = beams_of(position, returns_, options_.longest_beam_m);
+  void add(const Scan& scan, const Motion& motion) override {
+    const std::vector<Beam> beams = beams_of(scan, returns_, options_.longest_beam_m);
     Pose2 pose;
     if (!poses_.empty()) {
       pose = poses_.back() * motion.previous_from_this;

@@ -55,7 +55,7 @@ std::vector<AlignedPair> align_with_progress(const Log& references, const Log& q
 
 void print_summary(const AlignArguments& arguments, const std::vector<AlignedPair>& aligned, double wall_s) {
   const auto num_ok =
-      std::count_if(aligned.begin(), aligned.end(), [](const AlignedPair& pair) { return pair.alignment.ok(); });
+      std::count_if(aligned.begin(), aligned.end(), [](const AlignedPair& pair) { return pair.match.ok(); });
   char text[120];
   std::snprintf(text, sizeof text, "aligned %zu pairs in %.1f s, %td of them ok; written: ", aligned.size(), wall_s,
                 num_ok);
@@ -73,7 +73,7 @@ int run_align(const AlignArguments& arguments) {
   }
   check_paths(arguments);
   const auto read = [&](const std::string& path) {
-    Log log = select_positions(read_log(path, arguments.format, settings.reading), settings.selection);
+    Log log = select_scans(read_log(path, arguments.format, settings.reading), settings.selection);
     return with_straight_sweeps(std::move(log), arguments);
   };
   const Log log = read(arguments.log_path);

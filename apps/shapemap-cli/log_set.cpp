@@ -21,7 +21,7 @@ Log read_one(const LogSource& source, const MapArguments& arguments) {
   const MapSettings& settings = arguments.settings;
   Log log = read_log(source.path, source.format, settings.reading);
   try {
-    return select_positions(std::move(log), settings.selection);
+    return select_scans(std::move(log), settings.selection);
   } catch (const ConfigError& e) {
     throw ConfigError(arguments.logs.size() == 1 ? e.what() : source.path + ": " + e.what());
   }
@@ -29,7 +29,7 @@ Log read_one(const LogSource& source, const MapArguments& arguments) {
 
 }  // namespace
 
-std::string LogSet::position_name(std::size_t index) const {
+std::string LogSet::scan_name(std::size_t index) const {
   const std::size_t which = part_with(log, index);
   const std::size_t first = which == 0 ? 0 : log.starts[which - 1];
   const std::string name = "position " + std::to_string(index_in_whole_log(index - first, selection));

@@ -18,7 +18,7 @@ struct LogSet {
 
   bool is_one() const { return files.size() == 1; }
   /// "position 7", and of which log if there are several; counted in that whole log.
-  std::string position_name(std::size_t index) const;
+  std::string scan_name(std::size_t index) const;
 };
 
 /// Reads them, and selects positions of each. Throws InputError and ConfigError, naming the log.

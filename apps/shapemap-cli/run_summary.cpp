@@ -14,21 +14,20 @@ std::string counted(std::size_t count, const char* what) {
 }
 
 /// Whether an alignment to the positions before is behind its place; not so at the start of a log.
-bool is_chained(const ScanResult& position) {
-  return position.component >= 0 && !position.starts_component && position.alignment.status != MatchStatus::kNoShape;
+bool is_chained(const ScanResult& scan) {
+  return scan.component >= 0 && !scan.starts_component && scan.match.status != MatchStatus::kNoShape;
 }
 
 /// What makes the map though its alignment is in doubt.
-bool is_doubtful(const ScanResult& position) { return is_chained(position) && !position.alignment.ok(); }
+bool is_doubtful(const ScanResult& scan) { return is_chained(scan) && !scan.match.ok(); }
 
-bool is_uncertain(const ScanResult& position) { return is_doubtful(position) && !position.loop_constrained; }
+bool is_uncertain(const ScanResult& scan) { return is_doubtful(scan) && !scan.loop_constrained; }
 
 std::vector<std::string> uncertain_lines(const LogSet& logs, const MapResult& result) {
   std::vector<std::string> lines;
-  for (const ScanResult& position : result.scans) {
-    if (!is_uncertain(position)) continue;
-    lines.push_back(logs.position_name(position.scan_index) + " " + enum_name(position.alignment.status) + ": " +
-                    position.alignment.reason);
+  for (const ScanResult& scan : result.scans) {
+    if (!is_uncertain(scan)) continue;
+    lines.push_back(logs.scan_name(scan.scan_index) + " " + enum_name(scan.match.status) + ": " + scan.match.reason);
   }
   return lines;
 }
@@ -39,11 +38,11 @@ void print_uncertain(const MapResult& result) {
   std::size_t too_apart = 0;
   std::size_t ambiguous = 0;
   std::size_t degenerate = 0;
-  for (const ScanResult& position : result.scans) {
-    if (is_chained(position)) ++aligned;
-    if (is_doubtful(position) && position.loop_constrained) ++held;
-    if (!is_uncertain(position)) continue;
-    const MatchStatus status = position.alignment.status;
+  for (const ScanResult& scan : result.scans) {
+    if (is_chained(scan)) ++aligned;
+    if (is_doubtful(scan) && scan.loop_constrained) ++held;
+    if (!is_uncertain(scan)) continue;
+    const MatchStatus status = scan.match.status;
     ++(status == MatchStatus::kAmbiguous ? ambiguous : status == MatchStatus::kDegenerate ? degenerate : too_apart);
   }
   const std::size_t uncertain = too_apart + ambiguous + degenerate;
@@ -89,23 +88,23 @@ void print_contradicting(const LogSet& logs, const MapResult& result, std::size_
 }
 
 /// "positions 3 to 8 of a.log, 0 to 4 of b.log"
-std::string fragment_text(const LogSet& logs, const std::vector<PlacedScan>& scans) {
+std::string component_text(const LogSet& logs, const std::vector<PlacedScan>& scans) {
   std::string text;
   for (const LogPart& part : parts_of(logs.log)) {
     const std::vector<PlacedScan> own = placed_of(scans, part);
     if (own.empty()) continue;
     text += (text.empty() ? "" : "; ") + counted(own.size(), "position") + ", " +
-            logs.position_name(own.front().scan_index) + " to " + logs.position_name(own.back().scan_index);
+            logs.scan_name(own.front().scan_index) + " to " + logs.scan_name(own.back().scan_index);
   }
   return text;
 }
 
-std::vector<std::string> fragment_lines(const LogSet& logs, const MapResult& result) {
+std::vector<std::string> component_lines(const LogSet& logs, const MapResult& result) {
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     if (static_cast<int>(i) == result.largest_component || result.components[i].scans.empty()) continue;
     lines.push_back("fragment " + std::to_string(i) +
-                    " is apart from the map: " + fragment_text(logs, result.components[i].scans));
+                    " is apart from the map: " + component_text(logs, result.components[i].scans));
   }
   return lines;
 }
@@ -177,9 +176,8 @@ void print_details(const LogSet& logs, const RunCosts& costs, const StageTimes& 
 }
 
 std::string result_text(const MapArguments& arguments, const MapResult& result, double wall_s) {
-  const auto keyframes = std::count_if(result.scans.begin(), result.scans.end(), [](const auto& position) {
-    return position.component >= 0 && position.is_keyframe;
-  });
+  const auto keyframes = std::count_if(result.scans.begin(), result.scans.end(),
+                                       [](const auto& scan) { return scan.component >= 0 && scan.is_keyframe; });
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%.1f s", wall_s);
   return "placed " + std::to_string(result.placed().size()) + " of " + counted(result.scans.size(), "position") + " (" +
@@ -191,9 +189,9 @@ std::string result_text(const MapArguments& arguments, const MapResult& result, 
 
 std::vector<std::string> unplaced_lines(const LogSet& logs, const MapResult& result) {
   std::vector<std::string> lines;
-  for (const ScanResult& position : result.scans) {
-    const std::string why = result.why_not_in_map(position);
-    if (!why.empty()) lines.push_back(logs.position_name(position.scan_index) + " not placed: " + why);
+  for (const ScanResult& scan : result.scans) {
+    const std::string why = result.why_not_in_map(scan);
+    if (!why.empty()) lines.push_back(logs.scan_name(scan.scan_index) + " not placed: " + why);
   }
   return lines;
 }
@@ -222,7 +220,7 @@ void print_summary(const MapArguments& arguments, const LogSet& logs, const MapR
   print_lines("warning: ", warnings, max_listed);
   print_lines("", unplaced_lines(logs, result), max_listed);
   print_lines("", uncertain_lines(logs, result), max_listed);
-  if (verbose) print_lines("", fragment_lines(logs, result), max_listed);
+  if (verbose) print_lines("", component_lines(logs, result), max_listed);
   if (verbose) print_details(logs, costs, result.times);
   print_uncertain(result);
   print_contradicting(logs, result, max_listed);

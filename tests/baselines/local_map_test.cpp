@@ -55,14 +55,14 @@ TEST(Beams, StartAtTheLaserAndEndOnWalls) {
   scanner.num_sweeps = 4;
   scanner.view_rad = kPi / 2;
   scanner.num_beams = 90;
-  const Scan position = test::scan_of(world, pose, scanner);
-  const std::vector<Beam> beams = beams_of(position, {}, 20.0);
+  const Scan scan = test::scan_of(world, pose, scanner);
+  const std::vector<Beam> beams = beams_of(scan, {}, 20.0);
   ASSERT_THAT(beams, SizeIs(360));
   for (const Beam& beam : beams) {
     EXPECT_THAT(beam.from_m, test::IsNearPoint(Point2(0.0, 0.0), 1e-9));
     EXPECT_LT(test::distance_to_walls_m(world, pose * beam.to_m), 1e-5);
   }
-  const std::vector<Beam> shorter = beams_of(position, {}, 3.0);
+  const std::vector<Beam> shorter = beams_of(scan, {}, 3.0);
   EXPECT_LT(shorter.size(), beams.size());
   for (const Beam& beam : shorter) EXPECT_LE(beam.to_m.norm(), 3.0 + 1e-9);
 }

@@ -100,7 +100,7 @@ TEST_F(Motions, ALineThatIsOfNoPositionIsNamed) {
 }
 
 TEST_F(Motions, TimesThatRepeatAreTakenInOrder) {
-  for (Scan& position : log_.scans) position.timestamp_s = 5.0;
+  for (Scan& scan : log_.scans) scan.timestamp_s = 5.0;
   const std::vector<Motion> motions = motions_for(log_, {}, {tum({0, 1, 2, 3, 4, 5}), ""}, options_);
   for (std::size_t i = 1; i < 6; ++i) {
     EXPECT_THAT(motions[i].previous_from_this, test::IsNearPose(way(i - 1, i), 1e-8, 1e-8));

@@ -54,7 +54,7 @@ TEST(MrptIcp, CorrectsOdometryAndKeepsItForBlindScans) {
   std::vector<Motion> motions = motions_of(truth, Eigen::Matrix3d::Zero());
   for (Motion& motion : motions) motion.previous_from_this = motion.previous_from_this * Pose2{0.05, -0.04, 0.03};
   std::vector<Scan> scans = test::scans_of(truth);
-  scans.back() = shapemap::test::blind_position();
+  scans.back() = shapemap::test::blind_scan();
   const auto icp = make_mrpt_icp({}, {});
   std::vector<Pose2> found = placed(*icp, scans, motions);
   EXPECT_THAT(inverse(found[10]) * found[11], shapemap::test::IsNearPose(motions[11].previous_from_this, 1e-6, 1e-6));
@@ -129,7 +129,7 @@ TEST(MrptRbpf, SameSeedSamePosesAndAnotherSeedOthers) {
 TEST(MrptRbpf, AddsTheMotionsOfBlindScansToTheNext) {
   const std::vector<Pose2> truth = test::walk(6);
   std::vector<Scan> scans = test::scans_of(truth);
-  scans[2] = scans[3] = scans[5] = shapemap::test::blind_position();
+  scans[2] = scans[3] = scans[5] = shapemap::test::blind_scan();
   const Eigen::Matrix3d nearly_certain = test::covariance(0.001, 0.001);
   const auto filter = make_mrpt_rbpf(small_filter(), 1);
   const std::vector<Pose2> found = from_first(placed(*filter, scans, motions_of(truth, nearly_certain)));

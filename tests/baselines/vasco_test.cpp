@@ -68,7 +68,7 @@ TEST(Vasco, ACertainMotionIsKept) {
 
 TEST(Vasco, OfBlindScansKeepsWhatOdometrySays) {
   std::vector<Scan> scans = test::scans_of(test::walk(4));
-  scans[0] = scans[2] = shapemap::test::blind_position();
+  scans[0] = scans[2] = shapemap::test::blind_scan();
   const Motion motion{{0.12, 0.0, 0.1}, test::covariance(0.2, 0.2)};
   const std::vector<Pose2> found = placed(scans, std::vector<Motion>(4, motion));
   EXPECT_EQ(found[0], Pose2{});

@@ -22,10 +22,10 @@ const Log& demo_log() {
 
 /// The shape of a position with exactly kNumPoints points: the readings that hit nothing are made up for by repeating
 /// the last ones.
-Shape full_shape(std::size_t position) {
+Shape full_shape(std::size_t scan) {
   MappingOptions options;
   options.shape.points = ShapePoints::kBeams;
-  Shape shape = shape_of(demo_log().scans.at(position), options.returns, options.polylines, options.shape);
+  Shape shape = shape_of(demo_log().scans.at(scan), options.returns, options.polylines, options.shape);
   for (std::size_t i = 0; shape.size() < kNumPoints; ++i)
     shape.points.push_back(shape.points[shape.size() - 1 - 2 * i]);
   return shape;

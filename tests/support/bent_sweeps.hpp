@@ -34,20 +34,20 @@ inline Motion swinging(double yaw_rad, double speed_m_s = 0.0) {
 inline Scan bent_sweep(const World& world, const Motion& world_from_laser, double start_s, const RollingLaser& laser,
                        std::mt19937& rng) {
   std::normal_distribution<double> noise(0.0, 1.0);
-  Scan position;
-  position.timestamp_s = start_s;
-  Sweep scan;
-  scan.angle_step_rad = (laser.clockwise ? -1.0 : 1.0) * laser.view_rad / laser.num_beams;
-  scan.first_angle_rad = -0.5 * laser.num_beams * scan.angle_step_rad + 0.5 * scan.angle_step_rad;
-  scan.max_range_m = laser.max_range_m;
+  Scan scan;
+  scan.timestamp_s = start_s;
+  Sweep sweep;
+  sweep.angle_step_rad = (laser.clockwise ? -1.0 : 1.0) * laser.view_rad / laser.num_beams;
+  sweep.first_angle_rad = -0.5 * laser.num_beams * sweep.angle_step_rad + 0.5 * sweep.angle_step_rad;
+  sweep.max_range_m = laser.max_range_m;
   for (int b = 0; b < laser.num_beams; ++b) {
     const Pose2 pose = world_from_laser(start_s + b * laser.beam_step_s());
     const double range_m =
-        cast_ray_m(world, pose.translation(), pose.theta_rad + scan.beam_angle_rad(static_cast<std::size_t>(b)));
-    scan.ranges_m.push_back(static_cast<float>(std::min(range_m + laser.noise_m * noise(rng), laser.max_range_m)));
+        cast_ray_m(world, pose.translation(), pose.theta_rad + sweep.beam_angle_rad(static_cast<std::size_t>(b)));
+    sweep.ranges_m.push_back(static_cast<float>(std::min(range_m + laser.noise_m * noise(rng), laser.max_range_m)));
   }
-  position.sweeps.push_back(std::move(scan));
-  return position;
+  scan.sweeps.push_back(std::move(sweep));
+  return scan;
 }
 
 /// Sweeps that follow each other, and the true poses at their starts as references.
@@ -67,10 +67,10 @@ inline Log bent_log(const World& world, const Motion& world_from_laser, std::siz
 inline double off_the_walls_m(const Log& log, const World& world) {
   double squares_m2 = 0.0;
   std::size_t num = 0;
-  for (const Scan& position : log.scans) {
-    for (const Sweep& sweep : position.sweeps) {
+  for (const Scan& scan : log.scans) {
+    for (const Sweep& sweep : scan.sweeps) {
       for (const Return& hit : returns_in_robot(sweep, {})) {
-        const double off_m = distance_to_walls_m(world, *position.reference_pose * hit.p_in_robot_m);
+        const double off_m = distance_to_walls_m(world, *scan.reference_pose * hit.p_in_robot_m);
         squares_m2 += off_m * off_m;
         ++num;
       }

@@ -27,15 +27,15 @@ inline std::string input_error(const std::string& path, LogFormat format = LogFo
 
 /// A scan whose readings are all different, with two that hit nothing.
 inline Sweep make_scan(std::size_t num_beams, double first_angle_rad, double angle_step_rad) {
-  Sweep scan;
-  scan.first_angle_rad = first_angle_rad;
-  scan.angle_step_rad = angle_step_rad;
-  scan.max_range_m = 20.0;
-  scan.sensor_label = "laser";
-  for (std::size_t i = 0; i < num_beams; ++i) scan.ranges_m.push_back(1.0F + 0.01F * static_cast<float>(i));
-  scan.ranges_m[1] = std::numeric_limits<float>::quiet_NaN();
-  scan.ranges_m[num_beams - 2] = 20.0F;
-  return scan;
+  Sweep sweep;
+  sweep.first_angle_rad = first_angle_rad;
+  sweep.angle_step_rad = angle_step_rad;
+  sweep.max_range_m = 20.0;
+  sweep.sensor_label = "laser";
+  for (std::size_t i = 0; i < num_beams; ++i) sweep.ranges_m.push_back(1.0F + 0.01F * static_cast<float>(i));
+  sweep.ranges_m[1] = std::numeric_limits<float>::quiet_NaN();
+  sweep.ranges_m[num_beams - 2] = 20.0F;
+  return sweep;
 }
 
 /// Expects the same positions, times and points in the robot's frame.

@@ -14,10 +14,10 @@ struct PlacedLog {
   Log log;
   std::vector<PlacedScan> placed;
 
-  void add(Scan position, const Pose2& map_from_robot) {
-    position.timestamp_s = static_cast<double>(placed.size());
-    placed.push_back({placed.size(), position.timestamp_s, map_from_robot, std::vector<Pose2>(position.sweeps.size())});
-    log.scans.push_back(std::move(position));
+  void add(Scan scan, const Pose2& map_from_robot) {
+    scan.timestamp_s = static_cast<double>(placed.size());
+    placed.push_back({placed.size(), scan.timestamp_s, map_from_robot, std::vector<Pose2>(scan.sweeps.size())});
+    log.scans.push_back(std::move(scan));
   }
 };
 

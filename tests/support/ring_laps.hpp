@@ -43,33 +43,33 @@ inline const Laps& two_laps() {
 }
 
 /// A chain in which each keyframe is where `poses` have it, each link sure, and the map that follows.
-struct KnownChain {
-  KnownChain(const Laps& laps, const std::vector<Pose2>& poses) {
+struct KnownGraph {
+  KnownGraph(const Laps& laps, const std::vector<Pose2>& poses) {
     const MappingOptions options = quick_mapping();
     for (std::size_t i = 0; i < poses.size(); ++i) {
       auto view = std::make_shared<ScanView>(
           view_of(laps.log.scans[i], options.returns, options.polylines, options.shape, options.robust.matcher.view));
-      chain.keyframes.push_back({i, 0, std::move(view), {}, {}});
+      graph.keyframes.push_back({i, 0, std::move(view), {}, {}});
       if (i == 0) continue;
       const Pose2 step = inverse(poses[i - 1]) * poses[i];
-      OdometryEdge link;
-      link.candidates = {
-          candidate_at(*chain.keyframes[i - 1].view, *chain.keyframes[i].view, step, options.robust.matcher.search)};
-      chain.edges.push_back(std::move(link));
-      map.constraints.push_back(edge_constraint(chain, i - 1, 0));
+      OdometryEdge edge;
+      edge.candidates = {
+          candidate_at(*graph.keyframes[i - 1].view, *graph.keyframes[i].view, step, options.robust.matcher.search)};
+      graph.edges.push_back(std::move(edge));
+      map.constraints.push_back(edge_constraint(graph, i - 1, 0));
     }
     for (std::size_t i = 0; i + 2 < poses.size(); ++i) {
-      chain.edges[i].transition_scores = no_transition_scores(chain.edges[i], chain.edges[i + 1]);
+      graph.edges[i].transition_scores = no_transition_scores(graph.edges[i], graph.edges[i + 1]);
     }
-    choose_candidates(chain);
+    choose_candidates(graph);
     map.map_from_keyframe = poses;
-    map.edge_choice.assign(chain.edges.size(), 0);
-    map.loop_constrained.assign(chain.edges.size(), true);
+    map.edge_choice.assign(graph.edges.size(), 0);
+    map.loop_constrained.assign(graph.edges.size(), true);
     map.component.assign(poses.size(), 0);
   }
-  explicit KnownChain(const Laps& laps) : KnownChain(laps, laps.truth) {}
+  explicit KnownGraph(const Laps& laps) : KnownGraph(laps, laps.truth) {}
 
-  KeyframeGraph chain;
+  KeyframeGraph graph;
   OptimizedMap map;
 };
 

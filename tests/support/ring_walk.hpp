@@ -74,7 +74,7 @@ inline Eigen::Matrix3d covariance_of(double deviation_m, double deviation_rad) {
 }
 
 /// The chain that a robot makes that errs by `drift_rad` to the left at each step.
-inline std::vector<EdgeChoices> drifting_links(const std::vector<Pose2>& truth, double drift_rad, unsigned seed = 3) {
+inline std::vector<EdgeChoices> drifting_edges(const std::vector<Pose2>& truth, double drift_rad, unsigned seed = 3) {
   std::mt19937 rng(seed);
   std::vector<EdgeChoices> edges(truth.size() - 1);
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -118,7 +118,7 @@ inline double worst_off_m(const std::vector<Pose2>& map_from_node, const std::ve
 /// Node after node by the first alternatives of `links`.
 inline std::vector<Pose2> chained(const std::vector<EdgeChoices>& edges, const Pose2& first = {}) {
   std::vector<Pose2> poses{first};
-  for (const EdgeChoices& link : edges) poses.push_back(poses.back() * link.candidates.front().a_from_b);
+  for (const EdgeChoices& edge : edges) poses.push_back(poses.back() * edge.candidates.front().a_from_b);
   return poses;
 }
 

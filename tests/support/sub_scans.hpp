@@ -27,17 +27,17 @@ inline Stops stops_on_ring(std::size_t count, double apart_m, unsigned seed, dou
   for (std::size_t i = 0; i < count; ++i) {
     stops.truth.push_back(on_ring(apart_m * static_cast<double>(i)) * random_pose(rng, 0.1, 0.5));
     stops.robot_from_sweep.emplace_back();
-    Scan position;
-    position.timestamp_s = static_cast<double>(i);
+    Scan scan;
+    scan.timestamp_s = static_cast<double>(i);
     for (int turn = 0; turn < kTurns; ++turn) {
       const Pose2 nominal{0.0, 0.0, turn * kPi / 2};
       const Pose2 error = random_pose(rng, error_m, error_rad);
       stops.robot_from_sweep.back().push_back(error);
       Sweep sweep = scan_of(world, stops.truth.back() * error * nominal, scanner, rng).sweeps.front();
       sweep.nominal_heading_rad = nominal.theta_rad;
-      position.sweeps.push_back(std::move(sweep));
+      scan.sweeps.push_back(std::move(sweep));
     }
-    stops.log.scans.push_back(std::move(position));
+    stops.log.scans.push_back(std::move(scan));
   }
   return stops;
 }

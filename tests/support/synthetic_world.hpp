@@ -99,7 +99,7 @@ struct Scanner {
 /// What the scanner sees from `world_from_robot`.
 inline Scan scan_of(const World& world, const Pose2& world_from_robot, const Scanner& scanner, std::mt19937& rng) {
   std::normal_distribution<double> noise(0.0, 1.0);
-  Scan position;
+  Scan scan;
   for (int s = 0; s < scanner.num_sweeps; ++s) {
     Sweep sweep;
     sweep.angle_step_rad = scanner.view_rad / scanner.num_beams;
@@ -113,9 +113,9 @@ inline Scan scan_of(const World& world, const Pose2& world_from_robot, const Sca
       const double read_m = std::min(range_m + scanner.noise_m * noise(rng), scanner.max_range_m);
       sweep.ranges_m.push_back(static_cast<float>(read_m));
     }
-    position.sweeps.push_back(std::move(sweep));
+    scan.sweeps.push_back(std::move(sweep));
   }
-  return position;
+  return scan;
 }
 
 inline Scan scan_of(const World& world, const Pose2& world_from_robot, const Scanner& scanner = {}) {
@@ -150,8 +150,8 @@ inline MappingOptions paper_options() {
   return options;
 }
 
-inline Shape shape_of(const Scan& position, const MappingOptions& options) {
-  return shapemap::shape_of(position, options.returns, options.polylines, options.shape);
+inline Shape shape_of(const Scan& scan, const MappingOptions& options) {
+  return shapemap::shape_of(scan, options.returns, options.polylines, options.shape);
 }
 
 /// The shape of what a scanner sees, in the robot's frame.

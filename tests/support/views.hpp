@@ -60,7 +60,7 @@ inline Scanner full_circle() {
   return scanner;
 }
 
-inline ScanView view_of(const Scan& position) { return shapemap::view_of(position, {}, {}, {}, {}); }
+inline ScanView view_of(const Scan& scan) { return shapemap::view_of(scan, {}, {}, {}, {}); }
 
 inline ScanView view_from(const World& world, const Pose2& world_from_robot, const Scanner& scanner = full_circle(),
                           unsigned seed = 1) {
@@ -69,16 +69,16 @@ inline ScanView view_from(const World& world, const Pose2& world_from_robot, con
 }
 
 /// What a robot sees that stands there with its laser turned by `angle_rad` more: exactly the same points, turned.
-inline Scan turned(Scan position, double angle_rad) {
-  for (Sweep& sweep : position.sweeps) sweep.nominal_heading_rad += angle_rad;
-  return position;
+inline Scan turned(Scan scan, double angle_rad) {
+  for (Sweep& sweep : scan.sweeps) sweep.nominal_heading_rad += angle_rad;
+  return scan;
 }
 
 /// Nothing but beams without a return.
-inline Scan blind_position(int num_beams = 181) {
-  Scan position = scan_of(uneven_room(), {}, {num_beams, kPi, 0.0, 1, 20.0});
-  for (float& range_m : position.sweeps[0].ranges_m) range_m = std::numeric_limits<float>::quiet_NaN();
-  return position;
+inline Scan blind_scan(int num_beams = 181) {
+  Scan scan = scan_of(uneven_room(), {}, {num_beams, kPi, 0.0, 1, 20.0});
+  for (float& range_m : scan.sweeps[0].ranges_m) range_m = std::numeric_limits<float>::quiet_NaN();
+  return scan;
 }
 
 }  // namespace shapemap::test

@@ -30,16 +30,16 @@ std::string output_of(const TempFolder& folder, const std::string& command) {
   return test::read_file(shown);
 }
 
-Log four_sub_scans() {
+Log four_sweeps() {
   Log log;
   for (int i = 0; i < 5; ++i) {
-    Scan position;
-    position.timestamp_s = 1000.5 + i;
+    Scan scan;
+    scan.timestamp_s = 1000.5 + i;
     for (int turn = 0; turn < 4; ++turn) {
-      position.sweeps.push_back(make_scan(401, -50 * kDegree, 0.25 * kDegree));
-      position.sweeps.back().nominal_heading_rad = turn * 90 * kDegree;
+      scan.sweeps.push_back(make_scan(401, -50 * kDegree, 0.25 * kDegree));
+      scan.sweeps.back().nominal_heading_rad = turn * 90 * kDegree;
     }
-    log.scans.push_back(position);
+    log.scans.push_back(scan);
   }
   return log;
 }
@@ -50,7 +50,7 @@ TEST(MrptTools, RawlogEditOpensWhatWeWrite) {
   const LogPoses poses{std::vector<Pose2>(5, Pose2{1.0, 2.0, 0.5})};
   for (const LogPoses* maybe_poses : {static_cast<const LogPoses*>(nullptr), &poses}) {
     const std::string path = folder.path("out.rawlog");
-    write_log(four_sub_scans(), path, LogFormat::kRawlog, maybe_poses);
+    write_log(four_sweeps(), path, LogFormat::kRawlog, maybe_poses);
     const std::string shown = output_of(folder, "rawlog-edit --info -i " + path);
     EXPECT_THAT(shown, ContainsRegex("Overall number of objects +: 10"));  // an action and a frame per position
     EXPECT_THAT(shown, ContainsRegex("Actions/SensoryFrame format +: Yes"));
@@ -63,7 +63,7 @@ TEST(MrptTools, RawlogEditSeesOurPosesAsOdometry) {
   if (!is_installed("rawlog-edit")) GTEST_SKIP() << "needs rawlog-edit of Debian's package mrpt-apps";
   const TempFolder folder;
   const LogPoses poses{{{1.0, 2.0, 0.5}, {1.5, 2.25, 0.5}, {2.0, 2.5, 0.5}, {2.5, 2.75, 0.5}, {3.0, 3.0, 0.5}}};
-  write_log(four_sub_scans(), folder.path("out.rawlog"), LogFormat::kRawlog, &poses);
+  write_log(four_sweeps(), folder.path("out.rawlog"), LogFormat::kRawlog, &poses);
   const std::string shown = output_of(folder, "rawlog-edit --describe -i " + folder.path("out.rawlog"));
   EXPECT_THAT(shown, HasSubstr("CActionRobotMovement2D"));
 }
@@ -93,11 +93,11 @@ TEST(MrptTools, Carmen2rawlogOfRobotLaserLinesIsReadBackEqual) {
   const TempFolder folder;
   Log log;
   for (int i = 0; i < 3; ++i) {
-    Scan position;
-    position.timestamp_s = 100.25 + i;
-    position.sweeps = {make_scan(181, -90 * kDegree, kDegree)};
-    position.sweeps[0].max_range_m = 20.0 + i;  // no single maximum: cannot be FLASER
-    log.scans.push_back(position);
+    Scan scan;
+    scan.timestamp_s = 100.25 + i;
+    scan.sweeps = {make_scan(181, -90 * kDegree, kDegree)};
+    scan.sweeps[0].max_range_m = 20.0 + i;  // no single maximum: cannot be FLASER
+    log.scans.push_back(scan);
   }
   write_log(log, folder.path("in.log"), LogFormat::kCarmen);
   const Log ours = read_log(folder.path("in.log"));
@@ -120,10 +120,10 @@ TEST(MrptTools, Carmen2rawlogOfFlaserLinesIsReadBackWithItsAngles) {
     SCOPED_TRACE(std::to_string(num_beams) + " beams");
     Log log;
     for (int i = 0; i < 3; ++i) {
-      Scan position;
-      position.timestamp_s = 100.25 + i;
-      position.sweeps = {make_scan(num_beams, -90 * kDegree, step_deg * kDegree)};
-      log.scans.push_back(position);
+      Scan scan;
+      scan.timestamp_s = 100.25 + i;
+      scan.sweeps = {make_scan(num_beams, -90 * kDegree, step_deg * kDegree)};
+      log.scans.push_back(scan);
     }
     write_log(log, folder.path("in.log"), LogFormat::kCarmen);
     const std::string resolution = "PARAM laser_front_laser_resolution " + std::to_string(step_deg) + " h 0\n";

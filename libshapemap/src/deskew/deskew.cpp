@@ -127,7 +127,7 @@ class Part {
         parts[i].num_left = 1;
         return;
       }
-      straighten_position(sweeps[i].stamp_s, motion.trajectory, timing, scans[run.first + i], parts[i]);
+      straighten_scan(sweeps[i].stamp_s, motion.trajectory, timing, scans[run.first + i], parts[i]);
     });
     for (const SweepVerdict& part : parts) {
       verdict_.num_sweeps += part.num_sweeps;
@@ -136,19 +136,19 @@ class Part {
     }
   }
 
-  void straighten_position(double stamp_s, const SweepTrajectory& trajectory, const BeamTiming& timing, Scan& position,
-                           SweepVerdict& verdict) const {
+  void straighten_scan(double stamp_s, const SweepTrajectory& trajectory, const BeamTiming& timing, Scan& scan,
+                       SweepVerdict& verdict) const {
     const Pose2 stamp_from_map = inverse(trajectory.pose_at(stamp_s));
     const auto motion_of = [&](const Sweep& sweep) {
       return
           [&](std::size_t beam) { return stamp_from_map * trajectory.pose_at(stamp_s + timing.beam_s(sweep, beam)); };
     };
     double bent_m = 0.0;
-    for (const Sweep& sweep : position.sweeps) {
+    for (const Sweep& sweep : scan.sweeps) {
       bent_m = std::max(bent_m, most_bent_m(sweep, returns_, motion_of(sweep)));
     }
     if (bent_m < kStraight_m) return;
-    for (Sweep& sweep : position.sweeps) {
+    for (Sweep& sweep : scan.sweeps) {
       Sweep straight = unbent(sweep, returns_, motion_of(sweep));
       verdict.num_beams_twice += sweep.ranges_m.size() - straight.ranges_m.size();
       sweep = std::move(straight);

@@ -5,14 +5,14 @@
 
 namespace shapemap {
 
-std::vector<SweepPoint> sweep_points(const Scan& position, const ReturnOptions& options, std::size_t max_points) {
+std::vector<SweepPoint> sweep_points(const Scan& scan, const ReturnOptions& options, std::size_t max_points) {
   std::size_t num_beams = 0;
-  for (const Sweep& sweep : position.sweeps) num_beams += sweep.ranges_m.size();
+  for (const Sweep& sweep : scan.sweeps) num_beams += sweep.ranges_m.size();
   const std::size_t step = std::max<std::size_t>(1, (num_beams + max_points / 2) / max_points);
   std::vector<SweepPoint> points;
-  points.reserve(num_beams / step + position.sweeps.size());
-  for (std::size_t s = 0; s < position.sweeps.size(); ++s) {
-    std::vector<Return> returns = returns_in_robot(position.sweeps[s], options);
+  points.reserve(num_beams / step + scan.sweeps.size());
+  for (std::size_t s = 0; s < scan.sweeps.size(); ++s) {
+    std::vector<Return> returns = returns_in_robot(scan.sweeps[s], options);
     std::sort(returns.begin(), returns.end(), [](const Return& a, const Return& b) { return a.beam < b.beam; });
     bool begins_line = true;
     for (const Return& hit : returns) {

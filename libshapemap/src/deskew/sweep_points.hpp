@@ -20,6 +20,6 @@ struct SweepPoint {
 
 /// The hits of all sub-scans of a position, in the order in which their beams were sent; about `max_points` of them,
 /// evenly spread over the beams.
-std::vector<SweepPoint> sweep_points(const Scan& position, const ReturnOptions& options, std::size_t max_points);
+std::vector<SweepPoint> sweep_points(const Scan& scan, const ReturnOptions& options, std::size_t max_points);
 
 }  // namespace shapemap

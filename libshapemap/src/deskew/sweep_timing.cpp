@@ -26,8 +26,8 @@ double median_of(std::vector<double> values) {
 }
 
 /// Whether the log says of a beam that it was sent long before or after its sweep: that is no time to go by.
-bool has_odd_times(const Scan& position, double period_s) {
-  for (const Sweep& sweep : position.sweeps) {
+bool has_odd_times(const Scan& scan, double period_s) {
+  for (const Sweep& sweep : scan.sweeps) {
     for (std::size_t beam = 0; beam < sweep.ranges_m.size(); ++beam) {
       if (!(std::abs(sweep.beam_time_s(beam)) <= kOddTime * period_s)) return true;
     }
@@ -36,9 +36,9 @@ bool has_odd_times(const Scan& position, double period_s) {
 }
 
 /// What the beams of the widest sub-scan go through.
-double turned_rad(const Scan& position) {
+double turned_rad(const Scan& scan) {
   double turned_rad = 0.0;
-  for (const Sweep& sweep : position.sweeps) {
+  for (const Sweep& sweep : scan.sweeps) {
     const std::size_t num = sweep.ranges_m.size();
     if (num < 2) continue;
     double lowest_rad = sweep.beam_angle_rad(0);
@@ -94,20 +94,20 @@ std::vector<TimedSweep> timed_sweeps(const Log& log, std::size_t first, std::siz
   std::vector<TimedSweep> sweeps;
   sweeps.reserve(last - first);
   for (std::size_t i = first; i < last; ++i) {
-    const Scan& position = log.scans[i];
+    const Scan& scan = log.scans[i];
     TimedSweep sweep;
-    sweep.stamp_s = position.timestamp_s - log.scans[first].timestamp_s;
+    sweep.stamp_s = scan.timestamp_s - log.scans[first].timestamp_s;
     sweep.first_s = sweep.stamp_s;
     sweep.last_s = sweep.stamp_s;
     std::vector<double> ranges_m;
-    for (const SweepPoint& point : sweep_points(position, returns, max_points)) {
-      const double time_s = sweep.stamp_s + timing.beam_s(position.sweeps[point.sweep], point.beam);
+    for (const SweepPoint& point : sweep_points(scan, returns, max_points)) {
+      const double time_s = sweep.stamp_s + timing.beam_s(scan.sweeps[point.sweep], point.beam);
       sweep.points.push_back({point.p_m, time_s, point.begins_line});
       sweep.first_s = std::min(sweep.first_s, time_s);
       sweep.last_s = std::max(sweep.last_s, time_s);
       ranges_m.push_back(point.p_m.norm());
     }
-    sweep.turned_rad = turned_rad(position);
+    sweep.turned_rad = turned_rad(scan);
     sweep.usual_range_m = median_of(std::move(ranges_m));
     sweeps.push_back(std::move(sweep));
   }

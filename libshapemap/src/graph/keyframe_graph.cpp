@@ -8,7 +8,7 @@ namespace shapemap {
 namespace {
 
 /// A link that may be nothing is one choice as well.
-std::size_t num_choices(const OdometryEdge& link) { return std::max<std::size_t>(link.candidates.size(), 1); }
+std::size_t num_choices(const OdometryEdge& edge) { return std::max<std::size_t>(edge.candidates.size(), 1); }
 
 /// Both what the scans tell and that the sensor cannot jump: along a bare corridor, only that.
 Eigen::Matrix3d with_usual_motion(const Eigen::Matrix3d& covariance, bool is_expected) {
@@ -21,11 +21,11 @@ Eigen::Matrix3d with_usual_motion(const Eigen::Matrix3d& covariance, bool is_exp
 
 /// What the choice of a link leads by over all that is another place. Of places that were not found it is only known
 /// that they are no better than the worst that was.
-double margin_to_other_places(const KeyframeGraph& chain, std::size_t link) {
-  const OdometryEdge& of = chain.edges[link];
+double margin_to_other_places(const KeyframeGraph& graph, std::size_t edge) {
+  const OdometryEdge& of = graph.edges[edge];
   const Choice& choice = of.choice;
   if (of.candidates.size() < 2) return kFullMargin;
-  const PoseConstraint chosen = edge_constraint(chain, link, choice.candidate);
+  const PoseConstraint chosen = edge_constraint(graph, edge, choice.candidate);
   double to_other = kFullMargin;
   double to_worst = 0.0;
   for (std::size_t k = 0; k < of.candidates.size(); ++k) {
@@ -43,58 +43,58 @@ double surprise(const Keyframe& keyframe, const MotionPrior& prior, const Pose2&
   return keyframe.expected ? surprise(*keyframe.expected, found) : prior.surprise(found);
 }
 
-PoseConstraint edge_constraint(const KeyframeGraph& chain, std::size_t link, std::size_t k) {
-  const OdometryEdge& of = chain.edges[link];
+PoseConstraint edge_constraint(const KeyframeGraph& graph, std::size_t edge, std::size_t k) {
+  const OdometryEdge& of = graph.edges[edge];
   const MatchCandidate& pose = of.candidates[k];
-  if (of.culled_covariance) return {link, link + 1, pose.ref_from_query, *of.culled_covariance, 0.0};
-  const bool is_expected = chain.keyframes[link + 1].expected.has_value();
-  return {link, link + 1, pose.ref_from_query, with_usual_motion(pose_covariance(pose.fit), is_expected), 0.0};
+  if (of.culled_covariance) return {edge, edge + 1, pose.ref_from_query, *of.culled_covariance, 0.0};
+  const bool is_expected = graph.keyframes[edge + 1].expected.has_value();
+  return {edge, edge + 1, pose.ref_from_query, with_usual_motion(pose_covariance(pose.fit), is_expected), 0.0};
 }
 
-double edge_probability(const OdometryEdge& link) {
-  if (link.culled_covariance) return 1.0;
-  if (link.candidates.empty()) return 0.0;
-  return match_probability(link.candidates[link.choice.candidate], link.choice.margin);
+double edge_probability(const OdometryEdge& edge) {
+  if (edge.culled_covariance) return 1.0;
+  if (edge.candidates.empty()) return 0.0;
+  return match_probability(edge.candidates[edge.choice.candidate], edge.choice.margin);
 }
 
-double probability_by_two_scans(const OdometryEdge& link, std::size_t k, double margin) {
-  return odometry_probability(match_probability(link.candidates[k], margin), link.insufficient_view);
+double probability_by_two_scans(const OdometryEdge& edge, std::size_t k, double margin) {
+  return odometry_probability(match_probability(edge.candidates[k], margin), edge.insufficient_view);
 }
 
-double stated_probability(const OdometryEdge& link) {
-  if (link.verified) return link.verified->probability;
-  if (link.culled_covariance || link.candidates.empty()) return edge_probability(link);
-  return probability_by_two_scans(link, link.choice.candidate, link.choice.margin);
+double stated_probability(const OdometryEdge& edge) {
+  if (edge.verified) return edge.verified->probability;
+  if (edge.culled_covariance || edge.candidates.empty()) return edge_probability(edge);
+  return probability_by_two_scans(edge, edge.choice.candidate, edge.choice.margin);
 }
 
-MotionPrior motion_prior(const KeyframeGraph& chain) {
+MotionPrior motion_prior(const KeyframeGraph& graph) {
   constexpr double kCertain = 0.98;
   constexpr double kHeld_m = 0.2;
   std::vector<Pose2> motions;
-  for (const OdometryEdge& link : chain.edges) {
-    if (link.culled_covariance || stated_probability(link) < kCertain) continue;
-    const MatchCandidate& chosen = link.candidates[link.choice.candidate];
+  for (const OdometryEdge& edge : graph.edges) {
+    if (edge.culled_covariance || stated_probability(edge) < kCertain) continue;
+    const MatchCandidate& chosen = edge.candidates[edge.choice.candidate];
     if (worst_deviation_m(pose_covariance(chosen.fit)) < kHeld_m) motions.push_back(chosen.ref_from_query);
   }
   return MotionPrior(motions);
 }
 
-std::vector<std::vector<double>> no_transition_scores(const OdometryEdge& link, const OdometryEdge& next) {
-  return {num_choices(link), std::vector<double>(num_choices(next), 0.0)};
+std::vector<std::vector<double>> no_transition_scores(const OdometryEdge& edge, const OdometryEdge& next) {
+  return {num_choices(edge), std::vector<double>(num_choices(next), 0.0)};
 }
 
-void choose_candidates(KeyframeGraph& chain) {
+void choose_candidates(KeyframeGraph& graph) {
   ViterbiChain choices;
-  for (const OdometryEdge& link : chain.edges) {
+  for (const OdometryEdge& edge : graph.edges) {
     std::vector<double>& scores = choices.scores.emplace_back();
-    for (const MatchCandidate& pose : link.candidates) scores.push_back(pose.score);
-    scores.resize(num_choices(link), 0.0);
-    choices.transition_scores.push_back(link.transition_scores);
+    for (const MatchCandidate& pose : edge.candidates) scores.push_back(pose.score);
+    scores.resize(num_choices(edge), 0.0);
+    choices.transition_scores.push_back(edge.transition_scores);
   }
   const std::vector<Choice> best = viterbi(choices, kFullMargin);
-  for (std::size_t i = 0; i < chain.edges.size(); ++i) {
-    chain.edges[i].choice = best[i];
-    chain.edges[i].choice.margin = margin_to_other_places(chain, i);
+  for (std::size_t i = 0; i < graph.edges.size(); ++i) {
+    graph.edges[i].choice = best[i];
+    graph.edges[i].choice.margin = margin_to_other_places(graph, i);
   }
 }
 

@@ -74,25 +74,25 @@ double surprise(const Keyframe& keyframe, const MotionPrior& prior, const Pose2&
 /// What hypothesis number `k` of a link says. It is held at least as well as a motion is usually known before, best
 /// where scans follow each other closely, whichever hypothesis: none must be taken for being held less, and a corridor
 /// must not shrink because its scans slide.
-PoseConstraint edge_constraint(const KeyframeGraph& chain, std::size_t link, std::size_t k);
+PoseConstraint edge_constraint(const KeyframeGraph& graph, std::size_t edge, std::size_t k);
 
 /// match_probability() of the place that the chain chose; 1 where nothing is asked any more, 0 where there is none.
-double edge_probability(const OdometryEdge& link);
+double edge_probability(const OdometryEdge& edge);
 
 /// That hypothesis number `k` of a link is right, by its two scans; `margin` is its score above the best other place.
-double probability_by_two_scans(const OdometryEdge& link, std::size_t k, double margin);
+double probability_by_two_scans(const OdometryEdge& edge, std::size_t k, double margin);
 
 /// That the link is right, by all that is known but loops: what is stated in the end.
-double stated_probability(const OdometryEdge& link);
+double stated_probability(const OdometryEdge& edge);
 
 /// By the motions that are as good as certain, and that the scans hold in every direction.
-MotionPrior motion_prior(const KeyframeGraph& chain);
+MotionPrior motion_prior(const KeyframeGraph& graph);
 
 /// OdometryEdge::bonus of links that may be anything to each other.
-std::vector<std::vector<double>> no_transition_scores(const OdometryEdge& link, const OdometryEdge& next);
+std::vector<std::vector<double>> no_transition_scores(const OdometryEdge& edge, const OdometryEdge& next);
 
 /// Each link takes the hypothesis that goes together best with the links before and after it; its margin is that to the
 /// best that is another place. Along a bare corridor, hypotheses that slide along it are none.
-void choose_candidates(KeyframeGraph& chain);
+void choose_candidates(KeyframeGraph& graph);
 
 }  // namespace shapemap

@@ -12,23 +12,20 @@ namespace shapemap {
 /// Knows the alignments of keyframes as those of their positions.
 class KeyframeMatchCache : public MatchCache {
  public:
-  KeyframeMatchCache(const KeyframeGraph& chain, MatchCache& of_positions)
-      : chain_(chain), of_positions_(of_positions) {}
+  KeyframeMatchCache(const KeyframeGraph& graph, MatchCache& of_scans) : graph_(graph), of_scans_(of_scans) {}
 
-  std::optional<std::vector<MatchCandidate>> find(const MatchKey& key) override {
-    return of_positions_.find(of_position(key));
-  }
+  std::optional<std::vector<MatchCandidate>> find(const MatchKey& key) override { return of_scans_.find(of_scan(key)); }
   void keep(const MatchKey& key, const std::vector<MatchCandidate>& candidates) override {
-    of_positions_.keep(of_position(key), candidates);
+    of_scans_.keep(of_scan(key), candidates);
   }
 
  private:
-  MatchKey of_position(const MatchKey& key) const {
-    return {chain_.keyframes[key.reference].scan_index, chain_.keyframes[key.query].scan_index, key.search};
+  MatchKey of_scan(const MatchKey& key) const {
+    return {graph_.keyframes[key.reference].scan_index, graph_.keyframes[key.query].scan_index, key.search};
   }
 
-  const KeyframeGraph& chain_;
-  MatchCache& of_positions_;
+  const KeyframeGraph& graph_;
+  MatchCache& of_scans_;
 };
 
 }  // namespace shapemap

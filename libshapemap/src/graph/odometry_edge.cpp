@@ -6,8 +6,8 @@ namespace shapemap {
 std::vector<Pose2> sure_steps(const std::vector<EdgeChoices>& edges) {
   constexpr double kSure = 0.9;
   std::vector<Pose2> steps;
-  for (const EdgeChoices& link : edges) {
-    if (link.exists() && link.probability > kSure) steps.push_back(link.candidates.front().a_from_b);
+  for (const EdgeChoices& edge : edges) {
+    if (edge.exists() && edge.probability > kSure) steps.push_back(edge.candidates.front().a_from_b);
   }
   return steps;
 }

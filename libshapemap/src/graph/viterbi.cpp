@@ -20,14 +20,14 @@ Sums empty_sums(const ViterbiChain& chain) {
 
 Sums sums_before(const ViterbiChain& chain) {
   Sums sums = empty_sums(chain);
-  for (std::size_t link = 1; link < sums.size(); ++link) {
-    for (std::size_t to = 0; to < sums[link].size(); ++to) {
+  for (std::size_t edge = 1; edge < sums.size(); ++edge) {
+    for (std::size_t to = 0; to < sums[edge].size(); ++to) {
       double best = kNever;
-      for (std::size_t from = 0; from < sums[link - 1].size(); ++from) {
+      for (std::size_t from = 0; from < sums[edge - 1].size(); ++from) {
         best = std::max(
-            best, sums[link - 1][from] + chain.scores[link - 1][from] + chain.transition_scores[link - 1][from][to]);
+            best, sums[edge - 1][from] + chain.scores[edge - 1][from] + chain.transition_scores[edge - 1][from][to]);
       }
-      sums[link][to] = best;
+      sums[edge][to] = best;
     }
   }
   return sums;
@@ -35,13 +35,13 @@ Sums sums_before(const ViterbiChain& chain) {
 
 Sums sums_after(const ViterbiChain& chain) {
   Sums sums = empty_sums(chain);
-  for (std::size_t link = sums.size(); link-- > 1;) {
-    for (std::size_t from = 0; from < sums[link - 1].size(); ++from) {
+  for (std::size_t edge = sums.size(); edge-- > 1;) {
+    for (std::size_t from = 0; from < sums[edge - 1].size(); ++from) {
       double best = kNever;
-      for (std::size_t to = 0; to < sums[link].size(); ++to) {
-        best = std::max(best, sums[link][to] + chain.scores[link][to] + chain.transition_scores[link - 1][from][to]);
+      for (std::size_t to = 0; to < sums[edge].size(); ++to) {
+        best = std::max(best, sums[edge][to] + chain.scores[edge][to] + chain.transition_scores[edge - 1][from][to]);
       }
-      sums[link - 1][from] = best;
+      sums[edge - 1][from] = best;
     }
   }
   return sums;
@@ -53,10 +53,10 @@ std::vector<Choice> viterbi(const ViterbiChain& chain, double full_margin) {
   const Sums before = sums_before(chain);
   const Sums after = sums_after(chain);
   std::vector<Choice> choices;
-  for (std::size_t link = 0; link < chain.scores.size(); ++link) {
+  for (std::size_t edge = 0; edge < chain.scores.size(); ++edge) {
     std::vector<double> sums;
-    for (std::size_t i = 0; i < chain.scores[link].size(); ++i) {
-      sums.push_back(before[link][i] + chain.scores[link][i] + after[link][i]);
+    for (std::size_t i = 0; i < chain.scores[edge].size(); ++i) {
+      sums.push_back(before[edge][i] + chain.scores[edge][i] + after[edge][i]);
     }
     const auto best = std::max_element(sums.begin(), sums.end());
     Choice choice;

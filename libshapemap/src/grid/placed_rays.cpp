@@ -7,9 +7,9 @@
 namespace shapemap {
 namespace {
 
-/// Calls `visit(sweep, map_from_sub_scan)` for each sub-scan of the position.
+/// Calls `visit(sweep, map_from_sweep)` for each sub-scan of the position.
 template <class Visit>
-void for_each_sub_scan(const Log& log, const PlacedScan& place, const Visit& visit) {
+void for_each_sweep(const Log& log, const PlacedScan& place, const Visit& visit) {
   const std::vector<Sweep>& sweeps = log.scans.at(place.scan_index).sweeps;
   for (std::size_t i = 0; i < sweeps.size(); ++i) {
     visit(sweeps[i], place.map_from_robot * place.robot_from_sweep.at(i));
@@ -20,13 +20,13 @@ void for_each_sub_scan(const Log& log, const PlacedScan& place, const Visit& vis
 
 std::vector<Rays> rays_of(const Log& log, const PlacedScan& place, const ReturnOptions& options) {
   std::vector<Rays> all;
-  for_each_sub_scan(log, place, [&](const Sweep& sweep, const Pose2& map_from_sub_scan) {
+  for_each_sweep(log, place, [&](const Sweep& sweep, const Pose2& map_from_sweep) {
     const std::vector<Return> returns = returns_in_robot(sweep, options);
     if (returns.empty()) return;
     Rays rays;
     rays.hits_m.reserve(returns.size());
-    for (const Return& hit : returns) rays.hits_m.push_back(map_from_sub_scan * hit.p_in_robot_m);
-    rays.from_m = map_from_sub_scan * robot_from_sensor2(sweep).translation();
+    for (const Return& hit : returns) rays.hits_m.push_back(map_from_sweep * hit.p_in_robot_m);
+    rays.from_m = map_from_sweep * robot_from_sensor2(sweep).translation();
     rays.beam_step_rad = std::abs(sweep.angle_step_rad);
     all.push_back(std::move(rays));
   });
@@ -36,13 +36,13 @@ std::vector<Rays> rays_of(const Log& log, const PlacedScan& place, const ReturnO
 std::vector<OpenRays> open_rays_of(const Log& log, const PlacedScan& place, const ReturnOptions& options,
                                    double length_m) {
   std::vector<OpenRays> all;
-  for_each_sub_scan(log, place, [&](const Sweep& sweep, const Pose2& map_from_sub_scan) {
+  for_each_sweep(log, place, [&](const Sweep& sweep, const Pose2& map_from_sweep) {
     OpenRays rays;
     for (const Point2& end_in_robot_m : open_ends_in_robot(sweep, options, length_m)) {
-      rays.ends_m.push_back(map_from_sub_scan * end_in_robot_m);
+      rays.ends_m.push_back(map_from_sweep * end_in_robot_m);
     }
     if (rays.ends_m.empty()) return;
-    rays.from_m = map_from_sub_scan * robot_from_sensor2(sweep).translation();
+    rays.from_m = map_from_sweep * robot_from_sensor2(sweep).translation();
     all.push_back(std::move(rays));
   });
   return all;

@@ -25,15 +25,15 @@ const Eigen::Matrix3d kLoopCovariance = Eigen::Vector3d(0.01, 0.01, 0.0012).asDi
 
 class DoubtfulEdges {
  public:
-  DoubtfulEdges(const RobustOptions& options, const Execution& execution, KeyframeGraph& chain, OptimizedMap& map,
+  DoubtfulEdges(const RobustOptions& options, const Execution& execution, KeyframeGraph& graph, OptimizedMap& map,
                 MatchCache* store)
-      : options_(options), execution_(execution), chain_(chain), map_(map), store_(store) {
-    for (const Keyframe& keyframe : chain.keyframes) views_.push_back(keyframe.view);
+      : options_(options), execution_(execution), graph_(graph), map_(map), store_(store) {
+    for (const Keyframe& keyframe : graph.keyframes) views_.push_back(keyframe.view);
   }
 
   bool run() {
     poses_ = map_.map_from_keyframe;
-    prior_ = motion_prior(chain_);
+    prior_ = motion_prior(graph_);
     find();
     if (doubts_.empty()) return false;
     const double least = options_.front_end.split_below;
@@ -45,7 +45,7 @@ class DoubtfulEdges {
     drop_contradicted_loops();
     if (!changed_) return false;
     map_.map_from_keyframe = poses_;
-    std::vector<PoseConstraint> joined = edge_constraints(chain_, map_.edge_choice);
+    std::vector<PoseConstraint> joined = edge_constraints(graph_, map_.edge_choice);
     const std::vector<PoseConstraint> closed = loops([](const ClosedLoop&) { return true; });
     joined.insert(joined.end(), closed.begin(), closed.end());
     part(joined);
@@ -64,17 +64,17 @@ class DoubtfulEdges {
   void settle(double least_probability) {
     std::vector<DoubtfulEdge> doubtful;
     for (const Doubt& doubt : doubts_) doubtful.push_back(doubt.of_map);
-    VerifiedMap verified = verify_edges(views_, poses_, piece_, doubtful, options_.matcher.search.visibility,
+    VerifiedMap verified = verify_edges(views_, poses_, submap_, doubtful, options_.matcher.search.visibility,
                                         least_probability, execution_.threads, execution_.observer);
     poses_ = std::move(verified.map_from_node);
-    piece_ = std::move(verified.piece_of_node);
+    submap_ = std::move(verified.submap_of_node);
     std::vector<Doubt> rest;
     for (std::size_t d = 0; d < doubts_.size(); ++d) {
-      const VerifiedEdge& link = verified.edges[d];
-      const std::size_t candidate = doubts_[d].candidates[link.candidate];
-      note(doubts_[d], link);
-      if (link.joins) {
-        take(doubts_[d].of_map.link, static_cast<int>(candidate));
+      const VerifiedEdge& edge = verified.edges[d];
+      const std::size_t candidate = doubts_[d].candidates[edge.candidate];
+      note(doubts_[d], edge);
+      if (edge.joins) {
+        take(doubts_[d].of_map.edge, static_cast<int>(candidate));
       } else {
         rest.push_back(std::move(doubts_[d]));
       }
@@ -86,30 +86,29 @@ class DoubtfulEdges {
   void cut_those(bool all) {
     std::vector<Doubt> rest;
     for (Doubt& doubt : doubts_) {
-      const std::size_t link = doubt.of_map.link;
-      if (!all && piece_[link] != piece_[link + 1]) {
+      const std::size_t edge = doubt.of_map.edge;
+      if (!all && submap_[edge] != submap_[edge + 1]) {
         rest.push_back(std::move(doubt));
         continue;
       }
-      map_.edge_choice[link] = kCut;
+      map_.edge_choice[edge] = kCut;
       changed_ = true;
     }
     doubts_ = std::move(rest);
   }
 
   /// Where the observer asked to stop, nobody was asked, and the link is as probable as before.
-  void note(const Doubt& doubt, const VerifiedEdge& link) {
-    std::optional<VerifiedChoice>& verified = chain_.edges[doubt.of_map.link].verified;
+  void note(const Doubt& doubt, const VerifiedEdge& edge) {
+    std::optional<VerifiedChoice>& verified = graph_.edges[doubt.of_map.edge].verified;
     verified.reset();
-    if (link.support_by_others.empty()) return;
-    verified =
-        VerifiedChoice{doubt.candidates[link.candidate], link.probability, doubt.in_map,
-                       by_hypothesis(doubt, link.support_by_others), by_hypothesis(doubt, link.parallel_support)};
+    if (edge.support_by_others.empty()) return;
+    verified = VerifiedChoice{doubt.candidates[edge.candidate], edge.probability, doubt.in_map,
+                              by_candidate(doubt, edge.support_by_others), by_candidate(doubt, edge.parallel_support)};
   }
 
   /// Candidates are all hypotheses, that of the map first.
   template <class What>
-  static std::vector<What> by_hypothesis(const Doubt& doubt, const std::vector<What>& by_candidate) {
+  static std::vector<What> by_candidate(const Doubt& doubt, const std::vector<What>& by_candidate) {
     std::vector<What> in_order(by_candidate.size());
     for (std::size_t c = 0; c < by_candidate.size(); ++c) in_order[doubt.candidates[c]] = by_candidate[c];
     return in_order;
@@ -119,17 +118,17 @@ class DoubtfulEdges {
   void find() {
     std::vector<PoseConstraint> sure = loops([&](const ClosedLoop& loop) { return is_sure(loop); });
     std::vector<std::size_t> doubtful;
-    for (std::size_t i = 0; i < chain_.edges.size(); ++i) {
+    for (std::size_t i = 0; i < graph_.edges.size(); ++i) {
       if (is_doubtful(i)) {
         doubtful.push_back(i);
       } else if (map_.edge_choice[i] != kCut) {
         sure.push_back({i, i + 1, {}, Eigen::Matrix3d::Identity(), 0.0});
       }
     }
-    piece_ = connected_components(views_.size(), sure);
+    submap_ = connected_components(views_.size(), sure);
     for (const std::size_t i : doubtful) {
-      if (piece_[i] == piece_[i + 1]) continue;
-      doubts_.push_back({{i, {}, chain_.edges[i].insufficient_view}, hypothesis_in_map(i), {}});
+      if (submap_[i] == submap_[i + 1]) continue;
+      doubts_.push_back({{i, {}, graph_.edges[i].insufficient_view}, candidate_in_map(i), {}});
     }
   }
 
@@ -140,8 +139,8 @@ class DoubtfulEdges {
 
   /// A link that is cut where loops hold both sides is as doubtful as one that is improbable: so are the loops.
   bool is_doubtful(std::size_t i) const {
-    if (map_.component[i] != map_.component[i + 1] || chain_.edges[i].candidates.empty()) return false;
-    const double chance = map_.edge_choice[i] == kCut ? 0.0 : stated_probability(chain_.edges[i]);
+    if (map_.component[i] != map_.component[i + 1] || graph_.edges[i].candidates.empty()) return false;
+    const double chance = map_.edge_choice[i] == kCut ? 0.0 : stated_probability(graph_.edges[i]);
     return chance < std::max(options_.edge_verification.doubt_below, options_.front_end.split_below);
   }
 
@@ -161,46 +160,46 @@ class DoubtfulEdges {
       const std::size_t a = keyframe_of(loop.a);
       const std::size_t b = keyframe_of(loop.b);
       const Pose2 off = inverse(loop.a_from_b) * (inverse(poses_[a]) * poses_[b]);
-      return piece_[a] != piece_[b] || !is_within(off, kContradicts_m, kContradicts_rad);
+      return submap_[a] != submap_[b] || !is_within(off, kContradicts_m, kContradicts_rad);
     };
     const auto end = std::remove_if(map_.loops.begin(), map_.loops.end(), is_contradicted);
     changed_ = changed_ || end != map_.loops.end();
     map_.loops.erase(end, map_.loops.end());
   }
 
-  std::size_t keyframe_of(std::size_t position) const {
-    const auto found = std::lower_bound(chain_.keyframes.begin(), chain_.keyframes.end(), position,
+  std::size_t keyframe_of(std::size_t scan) const {
+    const auto found = std::lower_bound(graph_.keyframes.begin(), graph_.keyframes.end(), scan,
                                         [](const Keyframe& k, std::size_t p) { return k.scan_index < p; });
-    return static_cast<std::size_t>(found - chain_.keyframes.begin());
+    return static_cast<std::size_t>(found - graph_.keyframes.begin());
   }
 
   void add_candidates(Doubt& doubt, bool thoroughly) {
-    const std::size_t i = doubt.of_map.link;
-    OdometryEdge& link = chain_.edges[i];
+    const std::size_t i = doubt.of_map.edge;
+    OdometryEdge& edge = graph_.edges[i];
     if (thoroughly) {
       search_again(i);
-    } else if (edge_probability(link) < options_.loop_detection.bridge_below) {
+    } else if (edge_probability(edge) < options_.loop_detection.bridge_below) {
       add_bridges(i);
     }
     doubt.candidates = {doubt.in_map};
     doubt.of_map.candidates = {candidate(i, doubt.in_map, in_map(i))};
-    for (std::size_t k = 0; k < link.candidates.size(); ++k) {
+    for (std::size_t k = 0; k < edge.candidates.size(); ++k) {
       if (k == doubt.in_map) continue;
       doubt.candidates.push_back(k);
-      doubt.of_map.candidates.push_back(candidate(i, k, link.candidates[k].ref_from_query));
+      doubt.of_map.candidates.push_back(candidate(i, k, edge.candidates[k].ref_from_query));
     }
   }
 
   DoubtfulEdge::Candidate candidate(std::size_t i, std::size_t k, const Pose2& a_from_b) const {
-    const MatchCandidate& candidate = chain_.edges[i].candidates[k];
-    return {a_from_b, candidate.score, edge_constraint(chain_, i, k).covariance,
+    const MatchCandidate& candidate = graph_.edges[i].candidates[k];
+    return {a_from_b, candidate.score, edge_constraint(graph_, i, k).covariance,
             best_deviation_m(pose_covariance(candidate.fit))};
   }
 
   /// Where loops have cut a link, what the map has may be none of the link's hypotheses.
-  std::size_t hypothesis_in_map(std::size_t i) {
+  std::size_t candidate_in_map(std::size_t i) {
     if (map_.edge_choice[i] != kCut) return static_cast<std::size_t>(map_.edge_choice[i]);
-    std::vector<MatchCandidate>& known = chain_.edges[i].candidates;
+    std::vector<MatchCandidate>& known = graph_.edges[i].candidates;
     const Pose2 pose = in_map(i);
     add(i, refined_candidate(*views_[i], *views_[i + 1], pose, options_.matcher.search));
     const auto off = [&](const MatchCandidate& candidate) {
@@ -240,13 +239,13 @@ class DoubtfulEdges {
 
   /// What is unusual scores less, as in the chain.
   void add(std::size_t i, MatchCandidate pose) {
-    pose.score -= surprise(chain_.keyframes[i + 1], prior_, pose.ref_from_query);
-    add_if_new(pose, chain_.edges[i].candidates);
+    pose.score -= surprise(graph_.keyframes[i + 1], prior_, pose.ref_from_query);
+    add_if_new(pose, graph_.edges[i].candidates);
   }
 
-  void take(std::size_t link, int candidate) {
-    if (map_.edge_choice[link] == candidate) return;
-    map_.edge_choice[link] = candidate;
+  void take(std::size_t edge, int candidate) {
+    if (map_.edge_choice[edge] == candidate) return;
+    map_.edge_choice[edge] = candidate;
     changed_ = true;
   }
 
@@ -255,11 +254,11 @@ class DoubtfulEdges {
     map_.component = connected_components(views_.size(), joined);
     for (std::size_t n = 0; n < views_.size(); ++n) {
       if (map_.component[n] > 0)
-        map_.map_from_keyframe[n].x_m += kPiecesApart_m * static_cast<double>(map_.component[n]);
+        map_.map_from_keyframe[n].x_m += kComponentsApart_m * static_cast<double>(map_.component[n]);
     }
     const std::vector<bool> lone = bridge_edges(views_.size(), joined);
     std::size_t next = 0;
-    for (std::size_t i = 0; i < chain_.edges.size(); ++i) {
+    for (std::size_t i = 0; i < graph_.edges.size(); ++i) {
       const bool is_cut = map_.edge_choice[i] == kCut;
       map_.loop_constrained[i] = is_cut ? map_.component[i] == map_.component[i + 1] : !lone[next++];
     }
@@ -273,26 +272,26 @@ class DoubtfulEdges {
 
   const RobustOptions& options_;
   Execution execution_;
-  KeyframeGraph& chain_;
+  KeyframeGraph& graph_;
   OptimizedMap& map_;
   MatchCache* store_;
   NodeViews views_;
   std::vector<Doubt> doubts_;
   MotionPrior prior_;
-  std::vector<Pose2> poses_;        ///< of the pieces, as far as they are joined
-  std::vector<std::size_t> piece_;  ///< of each node
+  std::vector<Pose2> poses_;         ///< of the pieces, as far as they are joined
+  std::vector<std::size_t> submap_;  ///< of each node
   bool changed_ = false;
 };
 
 }  // namespace
 
 bool verify_doubtful_edges(const RobustOptions& options, const Execution& execution, MatchCache* store,
-                           KeyframeGraph& chain, OptimizedMap& map) {
+                           KeyframeGraph& graph, OptimizedMap& map) {
   if (options.edge_verification.doubt_below <= 0.0) return false;
   std::optional<KeyframeMatchCache> of_keyframes;
-  if (store) of_keyframes.emplace(chain, *store);
+  if (store) of_keyframes.emplace(graph, *store);
   try {
-    return DoubtfulEdges(options, execution, chain, map, of_keyframes ? &*of_keyframes : nullptr).run();
+    return DoubtfulEdges(options, execution, graph, map, of_keyframes ? &*of_keyframes : nullptr).run();
   } catch (const Interrupted&) {
     return false;
   }

@@ -12,6 +12,6 @@ namespace shapemap {
 /// say of it is added to its hypotheses in `chain`. Whether anything changed: poses of pieces that are not joined any
 /// more then lie far apart. `store`, by positions, may be null.
 bool verify_doubtful_edges(const RobustOptions& options, const Execution& execution, MatchCache* store,
-                           KeyframeGraph& chain, OptimizedMap& map);
+                           KeyframeGraph& graph, OptimizedMap& map);
 
 }  // namespace shapemap

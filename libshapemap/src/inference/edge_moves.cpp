@@ -14,7 +14,7 @@ constexpr int kRoundsOfRepair = 4;
 constexpr std::size_t kDoubtfulPerLoop = 4;
 
 /// A change is not pursued when the map is so much worse before loops follow.
-constexpr double kHopelessLink = 30.0;
+constexpr double kHopelessEdge = 30.0;
 constexpr double kHopelessLoop = 200.0;
 
 }  // namespace
@@ -46,11 +46,11 @@ bool EdgeMoves::better_when_closed(MapHypothesis& trial, MapHypothesis& best, do
 
 /// Whether a change of the best map so far has not been tried yet; what was tried is not worth another look until the
 /// map changes.
-bool EdgeMoves::is_new(std::size_t link, int choice, std::size_t loop) {
-  return tried_.insert({link, choice, loop}).second;
+bool EdgeMoves::is_new(std::size_t edge, int choice, std::size_t loop) {
+  return tried_.insert({edge, choice, loop}).second;
 }
 
-bool EdgeMoves::try_alternatives(MapHypothesis& best, std::size_t i) {
+bool EdgeMoves::try_candidates(MapHypothesis& best, std::size_t i) {
   const auto count = static_cast<int>(edges_[i].candidates.size());
   for (int choice = 0; choice < count && observer_.keep_going(); ++choice) {
     if (choice == best.edge_choice[i] || !is_new(i, choice, clusters_.size())) continue;
@@ -59,7 +59,7 @@ bool EdgeMoves::try_alternatives(MapHypothesis& best, std::size_t i) {
     const Pose2& a_from_b = edges_[i].candidates[static_cast<std::size_t>(choice)].a_from_b;
     swing(trial, i, trial.map_from_node[i] * a_from_b * inverse(trial.map_from_node[i + 1]));
     const bool was_changed = best.edge_choice[i] != 0;
-    if (better_when_closed(trial, best, was_changed ? kHopelessLoop : kHopelessLink)) return true;
+    if (better_when_closed(trial, best, was_changed ? kHopelessLoop : kHopelessEdge)) return true;
   }
   return false;
 }
@@ -67,9 +67,9 @@ bool EdgeMoves::try_alternatives(MapHypothesis& best, std::size_t i) {
 /// A strong loop that does not fit: one of the alignments along it may be wrong.
 bool EdgeMoves::try_cutting_for(MapHypothesis& best, std::size_t k) {
   const PoseConstraint& loop = problem_.best_member(k);
-  const std::vector<std::size_t> piece = pieces_of(problem_, best);
-  if (piece[loop.a] != piece[loop.b]) return false;
-  const std::vector<std::size_t> doubtful = doubtful_links(loop.a, loop.b, kDoubtfulPerLoop);
+  const std::vector<std::size_t> submap = submaps_of(problem_, best);
+  if (submap[loop.a] != submap[loop.b]) return false;
+  const std::vector<std::size_t> doubtful = doubtful_edges(loop.a, loop.b, kDoubtfulPerLoop);
   for (const std::size_t i : doubtful) {
     if (best.edge_choice[i] == kCut || !observer_.keep_going() || !is_new(i, kCut, k)) continue;
     MapHypothesis trial = best;
@@ -82,7 +82,7 @@ bool EdgeMoves::try_cutting_for(MapHypothesis& best, std::size_t k) {
 }
 
 /// The least probable of the links from node `first` to node `last`.
-std::vector<std::size_t> EdgeMoves::doubtful_links(std::size_t first, std::size_t last, std::size_t count) const {
+std::vector<std::size_t> EdgeMoves::doubtful_edges(std::size_t first, std::size_t last, std::size_t count) const {
   std::vector<std::size_t> doubtful;
   for (std::size_t i = first; i < last; ++i) {
     if (edges_[i].exists() && edges_[i].probability < doubt_below_) doubtful.push_back(i);
@@ -94,7 +94,7 @@ std::vector<std::size_t> EdgeMoves::doubtful_links(std::size_t first, std::size_
 }
 
 /// Those that do not take what the chain took.
-std::vector<std::size_t> EdgeMoves::changed_links(const MapHypothesis& map) const {
+std::vector<std::size_t> EdgeMoves::changed_edges(const MapHypothesis& map) const {
   std::vector<std::size_t> changed;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (edges_[i].exists() && map.edge_choice[i] != 0) changed.push_back(i);
@@ -119,9 +119,9 @@ void EdgeMoves::repair_doubtful(MapHypothesis& best) {
       --left;
       better = try_cutting_for(best, k) || better;
     }
-    for (const std::size_t i : changed_links(best)) better = try_alternatives(best, i) || better;
-    for (const std::size_t i : doubtful_links(0, edges_.size(), static_cast<std::size_t>(options_.repairs))) {
-      if (best.edge_choice[i] == 0) better = try_alternatives(best, i) || better;
+    for (const std::size_t i : changed_edges(best)) better = try_candidates(best, i) || better;
+    for (const std::size_t i : doubtful_edges(0, edges_.size(), static_cast<std::size_t>(options_.repairs))) {
+      if (best.edge_choice[i] == 0) better = try_candidates(best, i) || better;
     }
   }
 }

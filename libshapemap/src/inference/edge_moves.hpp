@@ -31,11 +31,11 @@ class EdgeMoves {
  private:
   void swing(MapHypothesis& map, std::size_t i, const Pose2& move) const;
   bool better_when_closed(MapHypothesis& trial, MapHypothesis& best, double hopeless);
-  bool is_new(std::size_t link, int choice, std::size_t loop);
-  bool try_alternatives(MapHypothesis& best, std::size_t i);
+  bool is_new(std::size_t edge, int choice, std::size_t loop);
+  bool try_candidates(MapHypothesis& best, std::size_t i);
   bool try_cutting_for(MapHypothesis& best, std::size_t k);
-  std::vector<std::size_t> doubtful_links(std::size_t first, std::size_t last, std::size_t count) const;
-  std::vector<std::size_t> changed_links(const MapHypothesis& map) const;
+  std::vector<std::size_t> doubtful_edges(std::size_t first, std::size_t last, std::size_t count) const;
+  std::vector<std::size_t> changed_edges(const MapHypothesis& map) const;
   void repair_doubtful(MapHypothesis& best);
 
   MapObjective& problem_;

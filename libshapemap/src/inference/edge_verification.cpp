@@ -84,11 +84,11 @@ VerifiedEdge verdict_by(const std::vector<double>& worths, const DoubtfulEdge& d
 
 class Revision {
  public:
-  Revision(const NodeViews& views, const std::vector<DoubtfulEdge>& doubtful, Submaps pieces,
+  Revision(const NodeViews& views, const std::vector<DoubtfulEdge>& doubtful, Submaps submaps,
            const VisibilityOptions& visibility, int threads)
       : views_(views),
         doubtful_(doubtful),
-        pieces_(std::move(pieces)),
+        submaps_(std::move(submaps)),
         visibility_(visibility),
         threads_(threads),
         edges_(doubtful.size()),
@@ -101,14 +101,14 @@ class Revision {
       join(*next);
     }
     if (!observer.keep_going()) leave_as_they_were();
-    return {pieces_.map_from_node(), pieces_.piece_of_node(), edges_};
+    return {submaps_.map_from_node(), submaps_.submap_of_node(), edges_};
   }
 
  private:
   std::optional<std::size_t> most_probable(double least_probability) {
     std::optional<std::size_t> best;
     for (std::size_t d = 0; d < doubtful_.size(); ++d) {
-      if (pieces_.is_joined(doubtful_[d].link)) continue;
+      if (submaps_.is_joined(doubtful_[d].edge)) continue;
       if (is_stale_[d]) edges_[d] = judged(d);
       is_stale_[d] = 0;
       if (edges_[d].probability < least_probability) continue;
@@ -121,7 +121,7 @@ class Revision {
     const DoubtfulEdge& doubt = doubtful_[d];
     std::vector<EdgeSupport> balances(doubt.candidates.size());
     parallel_for(balances.size(), threads_,
-                 [&](std::size_t k) { balances[k] = support_by_others(doubt.link, doubt.candidates[k].a_from_b); });
+                 [&](std::size_t k) { balances[k] = support_by_others(doubt.edge, doubt.candidates[k].a_from_b); });
     std::vector<double> parallel_support = said_by_parallel(d);
     std::vector<double> worths;
     for (std::size_t k = 0; k < balances.size(); ++k) {
@@ -134,17 +134,17 @@ class Revision {
   }
 
   /// By all pairs of scans of the two pieces that a link joins, but for the two of the link.
-  EdgeSupport support_by_others(std::size_t link, const Pose2& a_from_b) const {
-    const std::vector<Pose2>& poses = pieces_.map_from_node();
-    const std::vector<std::size_t>& piece = pieces_.piece_of_node();
-    const Pose2 move = pieces_.moved_by(link, a_from_b);
-    const std::size_t first = link + 1 - std::min(kWindow, link + 1);
-    const std::size_t last = std::min(poses.size(), link + 1 + kWindow);
+  EdgeSupport support_by_others(std::size_t edge, const Pose2& a_from_b) const {
+    const std::vector<Pose2>& poses = submaps_.map_from_node();
+    const std::vector<std::size_t>& submap = submaps_.submap_of_node();
+    const Pose2 move = submaps_.moved_by(edge, a_from_b);
+    const std::size_t first = edge + 1 - std::min(kWindow, edge + 1);
+    const std::size_t last = std::min(poses.size(), edge + 1 + kWindow);
     EdgeSupport balance;
     for (std::size_t a = first; a < last; ++a) {
-      if (piece[a] != piece[link]) continue;
+      if (submap[a] != submap[edge]) continue;
       for (std::size_t b = first; b < last; ++b) {
-        if (piece[b] != piece[link + 1] || (a == link && b == link + 1)) continue;
+        if (submap[b] != submap[edge + 1] || (a == edge && b == edge + 1)) continue;
         const Pose2 near_from_far = inverse(poses[a]) * (move * poses[b]);
         if (near_from_far.translation().norm() > kWithin_m) continue;
         balance.add(
@@ -163,7 +163,7 @@ class Revision {
       if (!are_near(d, e)) continue;
       const DoubtfulEdge& other = doubtful_[e];
       for (std::size_t j = 0; j < other.candidates.size(); ++j) {
-        const Pose2 place = pieces_.carried_to(doubt.link, other.link, other.candidates[j].a_from_b);
+        const Pose2 place = submaps_.carried_to(doubt.edge, other.edge, other.candidates[j].a_from_b);
         const double more_than_none = worth_by_itself(other, j) - worth_of_none(other);
         for (std::size_t k = 0; k < said.size(); ++k) {
           if (is_same(place, doubt.candidates[k].a_from_b)) said[k] = std::max(said[k], more_than_none);
@@ -176,34 +176,34 @@ class Revision {
   std::vector<std::size_t> parallel_to(std::size_t d) const {
     std::vector<std::size_t> parallel;
     for (std::size_t e = 0; e < doubtful_.size(); ++e) {
-      if (e != d && pieces_.are_parallel(doubtful_[d].link, doubtful_[e].link)) parallel.push_back(e);
+      if (e != d && submaps_.are_parallel(doubtful_[d].edge, doubtful_[e].edge)) parallel.push_back(e);
     }
     return parallel;
   }
 
   bool are_near(std::size_t d, std::size_t e) const {
-    const auto [before, after] = std::minmax(doubtful_[d].link, doubtful_[e].link);
+    const auto [before, after] = std::minmax(doubtful_[d].edge, doubtful_[e].edge);
     return after - before <= kWindow;
   }
 
   /// With the parallel links that say the same; those that say otherwise are no more probable than that it is wrong.
   void join(std::size_t d) {
-    const std::size_t link = doubtful_[d].link;
+    const std::size_t edge = doubtful_[d].edge;
     const Pose2 a_from_b = doubtful_[d].candidates[edges_[d].candidate].a_from_b;
     const double probability = edges_[d].probability;
     for (const std::size_t e : parallel_to(d)) {
-      const Pose2 place = pieces_.carried_to(doubtful_[e].link, link, a_from_b);
+      const Pose2 place = submaps_.carried_to(doubtful_[e].edge, edge, a_from_b);
       const std::optional<std::size_t> same = candidate_at(place, doubtful_[e], are_near(d, e));
       edges_[e].joins = same.has_value();
       edges_[e].candidate = same.value_or(edges_[e].candidate);
       edges_[e].probability = same ? probability : std::min(edges_[e].probability, 1.0 - probability);
     }
     edges_[d].joins = true;
-    pieces_.join(link, a_from_b);
-    const std::vector<std::size_t>& piece = pieces_.piece_of_node();
+    submaps_.join(edge, a_from_b);
+    const std::vector<std::size_t>& submap = submaps_.submap_of_node();
     for (std::size_t e = 0; e < doubtful_.size(); ++e) {
-      const std::size_t other = doubtful_[e].link;
-      if (piece[other] == piece[link] || piece[other + 1] == piece[link]) is_stale_[e] = 1;
+      const std::size_t other = doubtful_[e].edge;
+      if (submap[other] == submap[edge] || submap[other + 1] == submap[edge]) is_stale_[e] = 1;
     }
   }
 
@@ -225,17 +225,17 @@ class Revision {
 
   void leave_as_they_were() {
     for (std::size_t d = 0; d < doubtful_.size(); ++d) {
-      const std::size_t link = doubtful_[d].link;
+      const std::size_t edge = doubtful_[d].edge;
       const Pose2& in_map = doubtful_[d].candidates.front().a_from_b;
-      if (edges_[d].joins || (pieces_.is_joined(link) && !is_same(pieces_.step(link), in_map))) continue;
-      if (!pieces_.is_joined(link)) pieces_.join(link, in_map);
+      if (edges_[d].joins || (submaps_.is_joined(edge) && !is_same(submaps_.step(edge), in_map))) continue;
+      if (!submaps_.is_joined(edge)) submaps_.join(edge, in_map);
       edges_[d] = {0, 0.0, true, {}, {}};
     }
   }
 
   const NodeViews& views_;
   const std::vector<DoubtfulEdge>& doubtful_;
-  Submaps pieces_;
+  Submaps submaps_;
   const VisibilityOptions& visibility_;
   int threads_;
   std::vector<VerifiedEdge> edges_;
@@ -245,11 +245,11 @@ class Revision {
 }  // namespace
 
 VerifiedMap verify_edges(const NodeViews& views, std::vector<Pose2> map_from_node,
-                         std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulEdge>& doubtful,
+                         std::vector<std::size_t> submap_of_node, const std::vector<DoubtfulEdge>& doubtful,
                          const VisibilityOptions& visibility, double least_probability, int threads,
                          RunObserver& observer) {
-  Submaps pieces(std::move(map_from_node), std::move(piece_of_node));
-  return Revision(views, doubtful, std::move(pieces), visibility, threads).run(least_probability, observer);
+  Submaps submaps(std::move(map_from_node), std::move(submap_of_node));
+  return Revision(views, doubtful, std::move(submaps), visibility, threads).run(least_probability, observer);
 }
 
 }  // namespace shapemap

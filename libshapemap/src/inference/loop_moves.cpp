@@ -40,7 +40,7 @@ bool LoopMoves::close_agreeing(MapHypothesis& map) {
 }
 
 /// Whether loop `k` may decide where two pieces are to each other.
-bool LoopMoves::can_join(const MapHypothesis& map, const std::vector<std::size_t>& piece, std::size_t k) const {
+bool LoopMoves::can_join(const MapHypothesis& map, const std::vector<std::size_t>& submap, std::size_t k) const {
   const LoopCluster& cluster = clusters_[k];
   if (cluster.strength < kJoiningStrength || std::min(cluster.num_a, cluster.num_b) < kJoiningNodes) return false;
   const PoseConstraint& loop = problem_.best_member(k);
@@ -48,8 +48,8 @@ bool LoopMoves::can_join(const MapHypothesis& map, const std::vector<std::size_t
   for (std::size_t other = 0; other < clusters_.size(); ++other) {
     if (clusters_[other].strength * kJoiningLead < cluster.strength) continue;
     const PoseConstraint& rival = problem_.best_member(other);
-    const bool same_pieces = piece[rival.a] == piece[loop.a] && piece[rival.b] == piece[loop.b];
-    if (!same_pieces) continue;
+    const bool same_submaps = submap[rival.a] == submap[loop.a] && submap[rival.b] == submap[loop.b];
+    if (!same_submaps) continue;
     const Pose2 predicted = inverse(map.map_from_node[rival.a]) * move * map.map_from_node[rival.b];
     if (!is_within(inverse(rival.a_from_b) * predicted, kContradicts_m, kContradicts_rad)) return false;
   }
@@ -57,21 +57,21 @@ bool LoopMoves::can_join(const MapHypothesis& map, const std::vector<std::size_t
 }
 
 /// Brings two pieces that nothing joins yet to where a loop wants them; false if it may not decide that.
-bool LoopMoves::join_pieces(MapHypothesis& map, std::size_t k) const {
+bool LoopMoves::join_submaps(MapHypothesis& map, std::size_t k) const {
   const PoseConstraint& loop = problem_.best_member(k);
-  const std::vector<std::size_t> piece = pieces_of(problem_, map);
-  if (piece[loop.a] == piece[loop.b]) return true;
-  if (!can_join(map, piece, k)) return false;
+  const std::vector<std::size_t> submap = submaps_of(problem_, map);
+  if (submap[loop.a] == submap[loop.b]) return true;
+  if (!can_join(map, submap, k)) return false;
   const Pose2 move = join(map, loop);
   for (std::size_t n = 0; n < problem_.num_nodes(); ++n) {
-    if (piece[n] == piece[loop.b]) map.map_from_node[n] = move * map.map_from_node[n];
+    if (submap[n] == submap[loop.b]) map.map_from_node[n] = move * map.map_from_node[n];
   }
   return true;
 }
 
 bool LoopMoves::try_loop(MapHypothesis& map, std::size_t k) {
   MapHypothesis trial = map;
-  if (!join_pieces(trial, k)) return false;
+  if (!join_submaps(trial, k)) return false;
   trial.accepted[k] = 1;
   problem_.solve(trial);
   const double without_scans = problem_.worth(k) - 0.5 * (trial.chi_square - map.chi_square);

@@ -11,7 +11,7 @@
 namespace shapemap {
 
 /// Per node: the first of those that what was decided joins it to.
-inline std::vector<std::size_t> pieces_of(const MapObjective& problem, const MapHypothesis& map) {
+inline std::vector<std::size_t> submaps_of(const MapObjective& problem, const MapHypothesis& map) {
   return connected_components(problem.num_nodes(), problem.constraints(map));
 }
 
@@ -29,8 +29,8 @@ class LoopMoves {
 
  private:
   bool close_agreeing(MapHypothesis& map);
-  bool can_join(const MapHypothesis& map, const std::vector<std::size_t>& piece, std::size_t k) const;
-  bool join_pieces(MapHypothesis& map, std::size_t k) const;
+  bool can_join(const MapHypothesis& map, const std::vector<std::size_t>& submap, std::size_t k) const;
+  bool join_submaps(MapHypothesis& map, std::size_t k) const;
   bool try_loop(MapHypothesis& map, std::size_t k);
 
   MapObjective& problem_;

@@ -15,7 +15,7 @@ constexpr std::size_t kMembersUsed = 8;
 constexpr double kLoopLoss = 2.0;
 
 /// The chain's probabilities allow for scans of different places, which neighbours are not.
-constexpr double kPriorOfLinks = 2.0;
+constexpr double kPriorOfEdges = 2.0;
 
 /// The chain took its neighbours into account as well.
 constexpr double kAgainstChain = 3.0;
@@ -67,21 +67,21 @@ MapHypothesis MapObjective::undecided(std::vector<Pose2> map_from_node) const {
   MapHypothesis choice;
   choice.edge_choice.assign(edges_.size(), kCut);
   choice.accepted.assign(clusters_.size(), 0);
-  choice.refused_off.assign(clusters_.size(), Pose2{kPiecesApart_m, kPiecesApart_m, 0.0});
+  choice.refused_off.assign(clusters_.size(), Pose2{kComponentsApart_m, kComponentsApart_m, 0.0});
   choice.map_from_node = std::move(map_from_node);
   return choice;
 }
 
 MapHypothesis MapObjective::chain_alone() {
   MapHypothesis choice = undecided(std::vector<Pose2>(num_nodes_));
-  double next_piece_m = 0.0;
+  double next_component_m = 0.0;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (edges_[i].exists()) {
       choice.edge_choice[i] = 0;
       choice.map_from_node[i + 1] = choice.map_from_node[i] * edges_[i].candidates.front().a_from_b;
     } else {
-      next_piece_m += kPiecesApart_m;
-      choice.map_from_node[i + 1] = {next_piece_m, 0.0, 0.0};
+      next_component_m += kComponentsApart_m;
+      choice.map_from_node[i + 1] = {next_component_m, 0.0, 0.0};
     }
   }
   rate(choice);
@@ -113,8 +113,8 @@ std::vector<PoseConstraint> MapObjective::constraints(const MapHypothesis& choic
   std::vector<PoseConstraint> all;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (choice.edge_choice[i] == kCut) continue;
-    const EdgeChoices::Candidate& link = edges_[i].candidates[static_cast<std::size_t>(choice.edge_choice[i])];
-    all.push_back({i, i + 1, link.a_from_b, link.covariance, 0.0});
+    const EdgeChoices::Candidate& edge = edges_[i].candidates[static_cast<std::size_t>(choice.edge_choice[i])];
+    all.push_back({i, i + 1, edge.a_from_b, edge.covariance, 0.0});
   }
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
     if (choice.accepted[k]) all.insert(all.end(), loop_constraints_[k].begin(), loop_constraints_[k].end());
@@ -151,17 +151,17 @@ std::vector<std::size_t> MapObjective::rings(const MapHypothesis& choice) const 
 }
 
 /// Of alternatives that are not the best, of links that are cut, and of unusual steps and turns.
-double MapObjective::cost_of_links(const MapHypothesis& choice) const {
+double MapObjective::cost_of_edges(const MapHypothesis& choice) const {
   double cost = 0.0;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
-    const EdgeChoices& link = edges_[i];
-    if (!link.exists() || link.probability >= options_.doubt_below) continue;
+    const EdgeChoices& edge = edges_[i];
+    if (!edge.exists() || edge.probability >= options_.doubt_below) continue;
     if (choice.edge_choice[i] == kCut) {
-      const double p = std::clamp(std::max(link.probability, link.any_probability), 1e-3, 1.0 - 1e-6);
-      cost += std::max(0.0, log_odds_of(p) + kPriorOfLinks);
+      const double p = std::clamp(std::max(edge.probability, edge.any_probability), 1e-3, 1.0 - 1e-6);
+      cost += std::max(0.0, log_odds_of(p) + kPriorOfEdges);
     } else {
       const auto taken = static_cast<std::size_t>(choice.edge_choice[i]);
-      cost += link.candidates.front().score - link.candidates[taken].score + (taken == 0 ? 0.0 : kAgainstChain);
+      cost += edge.candidates.front().score - edge.candidates[taken].score + (taken == 0 ? 0.0 : kAgainstChain);
     }
     const Pose2& from = choice.map_from_node[i];
     const Pose2& to = choice.map_from_node[i + 1];
@@ -176,7 +176,7 @@ double MapObjective::cost_of_links(const MapHypothesis& choice) const {
 
 void MapObjective::rate(MapHypothesis& choice) {
   choice.value = MapScore::kWeight * score_.of(choice.map_from_node, rings(choice)) - 0.5 * choice.chi_square -
-                 cost_of_links(choice) + worth_of_loops(choice);
+                 cost_of_edges(choice) + worth_of_loops(choice);
 }
 
 double MapObjective::worth_of_loops(const MapHypothesis& choice) const {

@@ -64,7 +64,7 @@ class MapObjective {
  private:
   /// All links cut, no loop closed.
   MapHypothesis undecided(std::vector<Pose2> map_from_node) const;
-  double cost_of_links(const MapHypothesis& choice) const;
+  double cost_of_edges(const MapHypothesis& choice) const;
   /// Of all that are closed. Those between the same two stretches of the way are worth little more than the best of
   /// them: when the one is wrong since the stretches look alike, so are the others.
   double worth_of_loops(const MapHypothesis& choice) const;

@@ -69,7 +69,7 @@ RefinedMap refine_map(const std::vector<std::shared_ptr<const ScanView>>& views,
       if (constraint) map.neighbours.push_back(*constraint);
     }
     std::vector<PoseConstraint> constraints = chain;
-    for (PoseConstraint& link : constraints) link.loss_scale = kLossScale;
+    for (PoseConstraint& edge : constraints) edge.loss_scale = kLossScale;
     constraints.insert(constraints.end(), map.neighbours.begin(), map.neighbours.end());
     map_from_node = solve_pose_graph(map_from_node, constraints, 30).map_from_node;
   }

@@ -54,14 +54,14 @@ double MapScore::of(const std::vector<Pose2>& map_from_node, const std::vector<s
   return of_pairs(pairs);
 }
 
-double MapScore::between(const std::vector<Pose2>& pose_in_piece, const std::vector<std::size_t>& f,
+double MapScore::between(const std::vector<Pose2>& pose_in_submap, const std::vector<std::size_t>& f,
                          const std::vector<std::size_t>& g, const Pose2& f_from_g) {
   std::vector<RelativePose> pairs;
   for (const std::size_t j : g) {
-    const Pose2 there = f_from_g * pose_in_piece[j];
+    const Pose2 there = f_from_g * pose_in_submap[j];
     for (const std::size_t i : f) {
-      if ((pose_in_piece[i].translation() - there.translation()).squaredNorm() >= kWithin_m * kWithin_m) continue;
-      const Pose2 f_from_j = inverse(pose_in_piece[i]) * there;
+      if ((pose_in_submap[i].translation() - there.translation()).squaredNorm() >= kWithin_m * kWithin_m) continue;
+      const Pose2 f_from_j = inverse(pose_in_submap[i]) * there;
       if (is_asked(std::min(i, j), std::max(i, j))) {
         pairs.push_back(i < j ? RelativePose{i, j, f_from_j, 1.0} : RelativePose{j, i, inverse(f_from_j), 1.0});
       }

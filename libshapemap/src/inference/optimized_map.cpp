@@ -20,36 +20,36 @@ constexpr std::size_t kMembersKept = 3;
 constexpr double kLoopLoss = 2.0;
 
 /// Fills in what hangs together, and by what.
-void find_parts(const KeyframeGraph& chain, const std::vector<PoseConstraint>& loops, Improbable improbable,
+void find_parts(const KeyframeGraph& graph, const std::vector<PoseConstraint>& loops, Improbable improbable,
                 const RobustOptions& options, OptimizedMap& map) {
-  const std::size_t count = chain.keyframes.size();
-  map.loop_constrained.assign(chain.edges.size(), false);
-  std::vector<PoseConstraint> constraints = edge_constraints(chain, map.edge_choice);
+  const std::size_t count = graph.keyframes.size();
+  map.loop_constrained.assign(graph.edges.size(), false);
+  std::vector<PoseConstraint> constraints = edge_constraints(graph, map.edge_choice);
   constraints.insert(constraints.end(), loops.begin(), loops.end());
   const std::vector<bool> lone = bridge_edges(count, constraints);
   std::size_t next = 0;
-  for (std::size_t i = 0; i < chain.edges.size(); ++i) {
+  for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     if (map.edge_choice[i] == kCut) continue;
     const bool alone = lone[next++];
     map.loop_constrained[i] = !alone;
     if (!alone || improbable == Improbable::kStays) continue;
-    if (stated_probability(chain.edges[i]) < options.front_end.split_below) map.edge_choice[i] = kCut;
+    if (stated_probability(graph.edges[i]) < options.front_end.split_below) map.edge_choice[i] = kCut;
   }
-  constraints = edge_constraints(chain, map.edge_choice);
+  constraints = edge_constraints(graph, map.edge_choice);
   constraints.insert(constraints.end(), loops.begin(), loops.end());
   map.component = connected_components(count, constraints);
-  for (std::size_t i = 0; i < chain.edges.size(); ++i) {
+  for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     if (map.edge_choice[i] == kCut) map.loop_constrained[i] = map.component[i] == map.component[i + 1];
   }
 }
 
 /// For each keyframe, the piece of the chain that it is in, by number.
-std::vector<std::size_t> trusted_pieces(const std::vector<EdgeChoices>& edges) {
-  std::vector<std::size_t> piece(edges.size() + 1, 0);
+std::vector<std::size_t> trusted_submaps(const std::vector<EdgeChoices>& edges) {
+  std::vector<std::size_t> submap(edges.size() + 1, 0);
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    piece[i + 1] = piece[i] + (edges[i].exists() && edges[i].probability >= kTrusted ? 0 : 1);
+    submap[i + 1] = submap[i] + (edges[i].exists() && edges[i].probability >= kTrusted ? 0 : 1);
   }
-  return piece;
+  return submap;
 }
 
 std::vector<PoseConstraint> loop_constraints(const std::vector<LoopCluster>& clusters,
@@ -71,62 +71,63 @@ bool is_closed(const LoopCluster& cluster, const std::vector<Pose2>& map_from_ke
   return is_within(off, kContradicts_m, kContradicts_rad);
 }
 
-ClosedLoop closed_loop(const KeyframeGraph& chain, const LoopCluster& cluster) {
+ClosedLoop closed_loop(const KeyframeGraph& graph, const LoopCluster& cluster) {
   const LoopCandidate& best = cluster.members.front();
-  return {chain.keyframes[best.a].scan_index, chain.keyframes[best.b].scan_index, best.a_from_b, cluster.strength};
+  return {graph.keyframes[best.a].scan_index, graph.keyframes[best.b].scan_index, best.a_from_b, cluster.strength};
 }
 
 }  // namespace
 
-std::vector<PoseConstraint> edge_constraints(const KeyframeGraph& chain, const std::vector<int>& edge_choice) {
+std::vector<PoseConstraint> edge_constraints(const KeyframeGraph& graph, const std::vector<int>& edge_choice) {
   std::vector<PoseConstraint> constraints;
-  for (std::size_t i = 0; i < chain.edges.size(); ++i) {
+  for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     if (edge_choice[i] == kCut) continue;
-    constraints.push_back(edge_constraint(chain, i, static_cast<std::size_t>(edge_choice[i])));
+    constraints.push_back(edge_constraint(graph, i, static_cast<std::size_t>(edge_choice[i])));
   }
   return constraints;
 }
 
-OptimizedMap map_of_odometry(const KeyframeGraph& chain, const RobustOptions& options) {
+OptimizedMap map_of_odometry(const KeyframeGraph& graph, const RobustOptions& options) {
   OptimizedMap map;
-  map.map_from_keyframe.resize(chain.keyframes.size());
-  for (std::size_t i = 0; i < chain.edges.size(); ++i) {
-    const OdometryEdge& link = chain.edges[i];
-    map.edge_choice.push_back(link.candidates.empty() ? kCut : static_cast<int>(link.choice.candidate));
-    if (link.candidates.empty()) continue;
-    map.map_from_keyframe[i + 1] = map.map_from_keyframe[i] * link.candidates[link.choice.candidate].ref_from_query;
+  map.map_from_keyframe.resize(graph.keyframes.size());
+  for (std::size_t i = 0; i < graph.edges.size(); ++i) {
+    const OdometryEdge& edge = graph.edges[i];
+    map.edge_choice.push_back(edge.candidates.empty() ? kCut : static_cast<int>(edge.choice.candidate));
+    if (edge.candidates.empty()) continue;
+    map.map_from_keyframe[i + 1] = map.map_from_keyframe[i] * edge.candidates[edge.choice.candidate].ref_from_query;
   }
-  find_parts(chain, {}, Improbable::kIsCut, options, map);
+  find_parts(graph, {}, Improbable::kIsCut, options, map);
   return map;
 }
 
-OptimizedMap optimized_map(const KeyframeGraph& chain, const std::vector<LoopCandidate>& found, Improbable improbable,
+OptimizedMap optimized_map(const KeyframeGraph& graph, const std::vector<LoopCandidate>& found, Improbable improbable,
                            const RobustOptions& options, const Execution& execution) {
   RunObserver& observer = execution.observer;
   observer.on_stage("whole map");
-  OptimizedMap map = map_of_odometry(chain, options);
-  const NodeViews views = views_of(chain);
-  const std::vector<EdgeChoices> edges = edge_choices(chain);
+  OptimizedMap map = map_of_odometry(graph, options);
+  const NodeViews views = views_of(graph);
+  const std::vector<EdgeChoices> edges = edge_choices(graph);
   const std::vector<LoopCandidate> candidates = without_aliases(found, edges, map.map_from_keyframe);
-  const std::vector<LoopCluster> clusters = loop_clusters(candidates, map.map_from_keyframe, trusted_pieces(edges), {});
+  const std::vector<LoopCluster> clusters =
+      loop_clusters(candidates, map.map_from_keyframe, trusted_submaps(edges), {});
   const VisibilityOptions& visibility = options.matcher.search.visibility;
   const MapSolution solution =
       close_loops(views, edges, candidates, clusters, visibility, options.map_search, execution.threads, observer);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const int rank = solution.edge_choice[i];
     map.edge_choice[i] =
-        rank == kCut ? kCut : static_cast<int>(ranked_candidate(chain.edges[i], static_cast<std::size_t>(rank)));
+        rank == kCut ? kCut : static_cast<int>(ranked_candidate(graph.edges[i], static_cast<std::size_t>(rank)));
   }
   const std::vector<PoseConstraint> loops = loop_constraints(clusters, solution.accepted);
-  find_parts(chain, loops, improbable, options, map);
-  map.constraints = edge_constraints(chain, map.edge_choice);
+  find_parts(graph, loops, improbable, options, map);
+  map.constraints = edge_constraints(graph, map.edge_choice);
   map.constraints.insert(map.constraints.end(), loops.begin(), loops.end());
   RefinedMap refined = refine_map(views, solution.map_from_node, map.constraints, options.matcher.search,
                                   options.refinement, execution.threads, observer);
   map.map_from_keyframe = std::move(refined.map_from_node);
   map.constraints.insert(map.constraints.end(), refined.neighbours.begin(), refined.neighbours.end());
   for (const std::size_t k : solution.accepted) {
-    if (is_closed(clusters[k], map.map_from_keyframe)) map.loops.push_back(closed_loop(chain, clusters[k]));
+    if (is_closed(clusters[k], map.map_from_keyframe)) map.loops.push_back(closed_loop(graph, clusters[k]));
   }
   return map;
 }

@@ -24,7 +24,7 @@ struct OptimizedMap {
 };
 
 /// What the links say by the hypotheses that are chosen, but for those that are cut.
-std::vector<PoseConstraint> edge_constraints(const KeyframeGraph& chain, const std::vector<int>& edge_choice);
+std::vector<PoseConstraint> edge_constraints(const KeyframeGraph& graph, const std::vector<int>& edge_choice);
 
 /// What becomes of a link that is improbable by itself, and alone holds what comes after it.
 enum class Improbable {
@@ -33,11 +33,11 @@ enum class Improbable {
 };
 
 /// The chain as it is: errors add up. Improbable links are cut.
-OptimizedMap map_of_odometry(const KeyframeGraph& chain, const RobustOptions& options);
+OptimizedMap map_of_odometry(const KeyframeGraph& graph, const RobustOptions& options);
 
 /// The chain with its loops closed, and all scans aligned to all that see the same. When the observer asks to stop,
 /// with the loops that are closed by then.
-OptimizedMap optimized_map(const KeyframeGraph& chain, const std::vector<LoopCandidate>& candidates,
+OptimizedMap optimized_map(const KeyframeGraph& graph, const std::vector<LoopCandidate>& candidates,
                            Improbable improbable, const RobustOptions& options, const Execution& execution);
 
 }  // namespace shapemap

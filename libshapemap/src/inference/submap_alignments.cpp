@@ -33,10 +33,10 @@ std::size_t apart(std::size_t i, std::size_t j) { return i < j ? j - i : i - j; 
 SubmapAlignments::Seen SubmapAlignments::seen_from(std::size_t f, std::size_t joint) const {
   const PoseConstraint& c = joints_[joint].constraint;
   const double worth = joints_[joint].worth;
-  if (piece_of_node_[c.a] == f) {
-    return {joint, c.a, c.b, piece_from_node_[c.a] * c.a_from_b, piece_from_node_[c.b], worth};
+  if (submap_of_node_[c.a] == f) {
+    return {joint, c.a, c.b, submap_from_node_[c.a] * c.a_from_b, submap_from_node_[c.b], worth};
   }
-  return {joint, c.b, c.a, piece_from_node_[c.b] * inverse(c.a_from_b), piece_from_node_[c.a], worth};
+  return {joint, c.b, c.a, submap_from_node_[c.b] * inverse(c.a_from_b), submap_from_node_[c.a], worth};
 }
 
 bool SubmapAlignments::agree(const Pose2& f_from_g, const Seen& one, const Seen& seed) {
@@ -118,7 +118,7 @@ std::vector<SubmapAlignment> SubmapAlignments::ways(std::size_t f, const std::ve
 
 bool SubmapAlignments::holds(const SubmapCandidate& joint) const {
   const PoseConstraint& c = joint.constraint;
-  const Pose2 off = inverse(c.a_from_b) * (inverse(piece_from_node_[c.a]) * piece_from_node_[c.b]);
+  const Pose2 off = inverse(c.a_from_b) * (inverse(submap_from_node_[c.a]) * submap_from_node_[c.b]);
   return is_within(off, kSame_m, kSame_rad);
 }
 

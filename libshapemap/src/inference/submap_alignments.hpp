@@ -26,9 +26,9 @@ struct SubmapAlignment {
 /// Joints by index, poses by node, each in the frame of its piece.
 class SubmapAlignments {
  public:
-  SubmapAlignments(const std::vector<SubmapCandidate>& joints, const std::vector<Pose2>& piece_from_node,
-                   const std::vector<std::size_t>& piece_of_node)
-      : joints_(joints), piece_from_node_(piece_from_node), piece_of_node_(piece_of_node) {}
+  SubmapAlignments(const std::vector<SubmapCandidate>& joints, const std::vector<Pose2>& submap_from_node,
+                   const std::vector<std::size_t>& submap_of_node)
+      : joints_(joints), submap_from_node_(submap_from_node), submap_of_node_(submap_of_node) {}
 
   /// What some of `between`, the joints of `f` and another piece, agree on; those of the best joints first, and no more
   /// than can be right.
@@ -53,8 +53,8 @@ class SubmapAlignments {
   static double strength(const std::vector<Seen>& joints);
 
   const std::vector<SubmapCandidate>& joints_;
-  const std::vector<Pose2>& piece_from_node_;
-  const std::vector<std::size_t>& piece_of_node_;
+  const std::vector<Pose2>& submap_from_node_;
+  const std::vector<std::size_t>& submap_of_node_;
 };
 
 /// Where the chain goes from one piece to the other and back: nodes of both, `of_f` and `of_g`, in order.

@@ -40,7 +40,7 @@ constexpr double kNoise = 4.0;
 
 constexpr int kIterations = 10;
 
-using PiecePair = std::pair<std::size_t, std::size_t>;
+using SubmapPair = std::pair<std::size_t, std::size_t>;
 
 /// The best way, and how much better it is than the next, or than none.
 struct Lead {
@@ -62,15 +62,15 @@ class Assembly {
         pose_(std::move(map_of_odometry)),
         score_(score),
         usual_step_m_(step_statistics(sure_steps(edges)).step_m),
-        piece_(pose_.size(), 0),
+        submap_(pose_.size(), 0),
         log_(pose_.size(), 0) {
     for (std::size_t i = 0; i < edges.size(); ++i) {
-      piece_[i + 1] = piece_[i] + (is_sure(i) ? 0 : 1);
+      submap_[i + 1] = submap_[i] + (is_sure(i) ? 0 : 1);
       log_[i + 1] = log_[i] + (edges[i].exists() ? 0 : 1);
     }
-    nodes_.resize(piece_.back() + 1);
+    nodes_.resize(submap_.back() + 1);
     within_.resize(nodes_.size());
-    for (std::size_t n = 0; n < piece_.size(); ++n) nodes_[piece_[n]].push_back(n);
+    for (std::size_t n = 0; n < submap_.size(); ++n) nodes_[submap_[n]].push_back(n);
   }
 
   void add_joints(const std::vector<LoopCandidate>& loops) {
@@ -106,7 +106,7 @@ class Assembly {
         continue;
       }
       if (next->second.lead < 0.0) break;
-      const PiecePair pair = next->first;
+      const SubmapPair pair = next->first;
       const SubmapAlignment way = std::move(next->second.best);
       lay_together(pair, way);
     }
@@ -115,19 +115,19 @@ class Assembly {
   }
 
  private:
-  bool is_sure(std::size_t link) const { return edges_[link].exists() && edges_[link].probability >= kSure; }
+  bool is_sure(std::size_t edge) const { return edges_[edge].exists() && edges_[edge].probability >= kSure; }
 
   void add_joint(const PoseConstraint& constraint, double odds) {
     if (log_[constraint.a] != log_[constraint.b]) return;
-    const std::size_t f = piece_[constraint.a];
-    const std::size_t g = piece_[constraint.b];
+    const std::size_t f = submap_[constraint.a];
+    const std::size_t g = submap_[constraint.b];
     (f == g ? within_[f] : between_[{std::min(f, g), std::max(f, g)}]).push_back(joints_.size());
     joints_.push_back({constraint, std::clamp(odds + kPrior, 0.0, kMostPerNode), 0.0});
   }
 
-  double cost_of_steps(const PiecePair& pair, const Pose2& f_from_g) const {
+  double cost_of_steps(const SubmapPair& pair, const Pose2& f_from_g) const {
     double cost = 0.0;
-    std::size_t least = piece_.size();
+    std::size_t least = submap_.size();
     for (const Crossing& crossing : crossings(nodes_[pair.first], nodes_[pair.second])) {
       const double metres =
           (pose_[crossing.in_f].translation() - (f_from_g * pose_[crossing.in_g]).translation()).norm();
@@ -140,8 +140,8 @@ class Assembly {
     return cost;
   }
 
-  Lead lead_of(const PiecePair& pair) {
-    std::vector<SubmapAlignment> ways = SubmapAlignments(joints_, pose_, piece_).ways(pair.first, between_[pair]);
+  Lead lead_of(const SubmapPair& pair) {
+    std::vector<SubmapAlignment> ways = SubmapAlignments(joints_, pose_, submap_).ways(pair.first, between_[pair]);
     const auto better = [](const SubmapAlignment& one, const SubmapAlignment& other) { return one.gain > other.gain; };
     for (SubmapAlignment& way : ways) way.gain -= cost_of_steps(pair, way.f_from_g);
     std::stable_sort(ways.begin(), ways.end(), better);
@@ -163,11 +163,11 @@ class Assembly {
     });
   }
 
-  void lay_together(const PiecePair& pair, const SubmapAlignment& way) {
+  void lay_together(const SubmapPair& pair, const SubmapAlignment& way) {
     const auto [f, g] = pair;
     for (const std::size_t n : nodes_[g]) {
       pose_[n] = way.f_from_g * pose_[n];
-      piece_[n] = f;
+      submap_[n] = f;
     }
     const bool f_is_smaller = nodes_[f].size() < nodes_[g].size();
     std::vector<std::size_t> all;
@@ -180,14 +180,14 @@ class Assembly {
     between_.erase(pair);
     leads_.erase(pair);
     if (!is_hinge(way)) solve(f, way.joints);  // else nothing bends
-    for (const PiecePair& other : inherit(f, g, f_is_smaller)) leads_[other] = lead_of(other);
+    for (const SubmapPair& other : inherit(f, g, f_is_smaller)) leads_[other] = lead_of(other);
   }
 
   /// What joined `g` to others now joins `f`. Returns the pairs that new joints have come to, or to which the smaller
   /// of the two belonged; to others too little is new to look again before it is their turn.
-  std::vector<PiecePair> inherit(std::size_t f, std::size_t g, bool f_is_smaller) {
-    std::vector<PiecePair> changed;
-    std::vector<PiecePair> gone;
+  std::vector<SubmapPair> inherit(std::size_t f, std::size_t g, bool f_is_smaller) {
+    std::vector<SubmapPair> changed;
+    std::vector<SubmapPair> gone;
     for (const auto& entry : between_) {
       const auto [one, other] = entry.first;
       if (one == g || other == g) gone.push_back(entry.first);
@@ -198,9 +198,9 @@ class Assembly {
         leads_[entry.first].is_stale = true;
       }
     }
-    for (const PiecePair& old : gone) {
+    for (const SubmapPair& old : gone) {
       const std::size_t third = old.first == g ? old.second : old.first;
-      const PiecePair now{std::min(f, third), std::max(f, third)};
+      const SubmapPair now{std::min(f, third), std::max(f, third)};
       const std::vector<std::size_t> joints = std::move(between_[old]);
       between_.erase(old);
       leads_.erase(old);
@@ -229,13 +229,13 @@ class Assembly {
     for (const std::size_t n : nodes) {
       poses.push_back(pose_[n]);
       if (n >= edges_.size() || !is_sure(n)) continue;
-      const EdgeChoices::Candidate& link = edges_[n].candidates.front();
-      add({n, n + 1, link.a_from_b, link.covariance, 0.0});
+      const EdgeChoices::Candidate& edge = edges_[n].candidates.front();
+      add({n, n + 1, edge.a_from_b, edge.covariance, 0.0});
     }
-    const SubmapAlignments pieces(joints_, pose_, piece_);
+    const SubmapAlignments submaps(joints_, pose_, submap_);
     const std::set<std::size_t> decided(taken.begin(), taken.end());
     for (const std::size_t joint : within_[f]) {
-      if (decided.count(joint) != 0 || pieces.holds(joints_[joint])) add(joints_[joint].constraint);
+      if (decided.count(joint) != 0 || submaps.holds(joints_[joint])) add(joints_[joint].constraint);
     }
     const std::vector<Pose2> solved = solve_pose_graph(poses, constraints, kIterations).map_from_node;
     for (std::size_t k = 0; k < nodes.size(); ++k) pose_[nodes[k]] = solved[k];
@@ -243,13 +243,13 @@ class Assembly {
 
   void join_the_rest() {
     for (std::size_t i = 0; i < edges_.size(); ++i) {
-      const std::size_t f = piece_[i];
-      const std::size_t g = piece_[i + 1];
+      const std::size_t f = submap_[i];
+      const std::size_t g = submap_[i + 1];
       if (f == g) continue;
       const Pose2 move = pose_[i] * inverse(chain_[i]) * chain_[i + 1] * inverse(pose_[i + 1]);
       for (const std::size_t n : nodes_[g]) {
         pose_[n] = move * pose_[n];
-        piece_[n] = f;
+        submap_[n] = f;
       }
       nodes_[f].insert(nodes_[f].end(), nodes_[g].begin(), nodes_[g].end());
       nodes_[g].clear();
@@ -261,13 +261,13 @@ class Assembly {
   std::vector<Pose2> pose_;  ///< in the frame of the piece
   MapScore& score_;
   double usual_step_m_;
-  std::vector<std::size_t> piece_;               ///< of each node
+  std::vector<std::size_t> submap_;              ///< of each node
   std::vector<std::size_t> log_;                 ///< of each node: alignments of the chain join all of one log
   std::vector<std::vector<std::size_t>> nodes_;  ///< of each piece, in order
   std::vector<SubmapCandidate> joints_;
   std::vector<std::vector<std::size_t>> within_;  ///< joints of each piece
-  std::map<PiecePair, std::vector<std::size_t>> between_;
-  std::map<PiecePair, Lead> leads_;
+  std::map<SubmapPair, std::vector<std::size_t>> between_;
+  std::map<SubmapPair, Lead> leads_;
 };
 
 }  // namespace

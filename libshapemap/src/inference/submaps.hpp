@@ -11,32 +11,32 @@ namespace shapemap {
 /// A map in pieces, each right in itself, in one frame. Link i is what node i + 1 is to node i.
 class Submaps {
  public:
-  Submaps(std::vector<Pose2> map_from_node, std::vector<std::size_t> piece_of_node)
-      : map_from_node_(std::move(map_from_node)), piece_of_node_(std::move(piece_of_node)) {}
+  Submaps(std::vector<Pose2> map_from_node, std::vector<std::size_t> submap_of_node)
+      : map_from_node_(std::move(map_from_node)), submap_of_node_(std::move(submap_of_node)) {}
 
   const std::vector<Pose2>& map_from_node() const { return map_from_node_; }
-  const std::vector<std::size_t>& piece_of_node() const { return piece_of_node_; }
+  const std::vector<std::size_t>& submap_of_node() const { return submap_of_node_; }
 
-  bool is_joined(std::size_t link) const { return piece_of_node_[link] == piece_of_node_[link + 1]; }
+  bool is_joined(std::size_t edge) const { return submap_of_node_[edge] == submap_of_node_[edge + 1]; }
 
   /// What node i + 1 is to node i now.
-  Pose2 step(std::size_t link) const { return inverse(map_from_node_[link]) * map_from_node_[link + 1]; }
+  Pose2 step(std::size_t edge) const { return inverse(map_from_node_[edge]) * map_from_node_[edge + 1]; }
 
   /// How the piece of the later node moves when the link is `a_from_b`.
-  Pose2 moved_by(std::size_t link, const Pose2& a_from_b) const;
+  Pose2 moved_by(std::size_t edge, const Pose2& a_from_b) const;
 
   /// Moves the piece of the later node, and gives it the number of the other.
-  void join(std::size_t link, const Pose2& a_from_b);
+  void join(std::size_t edge, const Pose2& a_from_b);
 
   /// Whether both links join the same two pieces, in either direction.
-  bool are_parallel(std::size_t link, std::size_t other) const;
+  bool are_parallel(std::size_t edge, std::size_t other) const;
 
   /// What `link` is when a parallel one is `a_from_b`.
-  Pose2 carried_to(std::size_t link, std::size_t parallel, const Pose2& a_from_b) const;
+  Pose2 carried_to(std::size_t edge, std::size_t parallel, const Pose2& a_from_b) const;
 
  private:
   std::vector<Pose2> map_from_node_;
-  std::vector<std::size_t> piece_of_node_;
+  std::vector<std::size_t> submap_of_node_;
 };
 
 }  // namespace shapemap

@@ -8,13 +8,13 @@
 #include "shapemap/inference/sweep_refinement.hpp"
 
 namespace shapemap {
-SweepCorrections refine_sweeps_of_map(const KeyframeGraph& chain, const RobustOptions& options,
+SweepCorrections refine_sweeps_of_map(const KeyframeGraph& graph, const RobustOptions& options,
                                       const Execution& execution, OptimizedMap& map) {
-  const bool has_several = std::any_of(chain.keyframes.begin(), chain.keyframes.end(),
+  const bool has_several = std::any_of(graph.keyframes.begin(), graph.keyframes.end(),
                                        [](const Keyframe& keyframe) { return !keyframe.sweep_views.empty(); });
   if (!has_several || options.sweep_refinement.rounds == 0) return {};
   SweepViews views;
-  for (const Keyframe& keyframe : chain.keyframes) {
+  for (const Keyframe& keyframe : graph.keyframes) {
     if (keyframe.sweep_views.empty()) {
       views.push_back({keyframe.view});
     } else {
@@ -22,7 +22,7 @@ SweepCorrections refine_sweeps_of_map(const KeyframeGraph& chain, const RobustOp
     }
   }
   SweepPoses poses =
-      refine_sweeps(views, map.map_from_keyframe, map.component, edge_constraints(chain, map.edge_choice),
+      refine_sweeps(views, map.map_from_keyframe, map.component, edge_constraints(graph, map.edge_choice),
                     options.matcher.search.line, options.sweep_refinement, execution.threads, execution.observer);
   map.map_from_keyframe = std::move(poses.map_from_node);
   return std::move(poses.node_from_sweep);

@@ -13,7 +13,7 @@ namespace shapemap {
 using SweepCorrections = std::vector<std::vector<Pose2>>;
 
 /// Refines the poses of `map` and of all sub-scans. Changes nothing where each position has one sub-scan.
-SweepCorrections refine_sweeps_of_map(const KeyframeGraph& chain, const RobustOptions& options,
+SweepCorrections refine_sweeps_of_map(const KeyframeGraph& graph, const RobustOptions& options,
                                       const Execution& execution, OptimizedMap& map);
 
 }  // namespace shapemap

@@ -45,7 +45,7 @@ class Refinement {
       first_.push_back(poses_.size());
       poses_.insert(poses_.end(), views[node].size(), map_from_node[node]);
     }
-    tie_sub_scans();
+    tie_sweeps();
   }
 
   void hold(const std::vector<PoseConstraint>& known) {
@@ -86,7 +86,7 @@ class Refinement {
     const ScanView* query;
   };
 
-  void tie_sub_scans() {
+  void tie_sweeps() {
     const double area_m2 = options_.sigma_m * options_.sigma_m;
     const Eigen::Matrix3d covariance =
         Eigen::Vector3d(area_m2, area_m2, options_.sigma_rad * options_.sigma_rad).asDiagonal();

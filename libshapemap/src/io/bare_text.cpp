@@ -26,7 +26,7 @@ class BareReader {
     }
     choice.report(source_.path(), log_);
     finish_log(source_, log_);
-    warn_of_incomplete_position();
+    warn_of_incomplete_scan();
     return std::move(log_);
   }
 
@@ -39,36 +39,36 @@ class BareReader {
       throw lines_.error(std::to_string(num_beams) + " numbers, but the lines before have " +
                          std::to_string(num_beams_));
     }
-    Sweep scan;
-    scan.sensor_label = kLabel;
-    scan.first_angle_rad = -options_.fov_rad / 2;
-    scan.angle_step_rad = options_.fov_rad / static_cast<double>(num_beams - 1);
-    scan.ranges_m.reserve(num_beams);
+    Sweep sweep;
+    sweep.sensor_label = kLabel;
+    sweep.first_angle_rad = -options_.fov_rad / 2;
+    sweep.angle_step_rad = options_.fov_rad / static_cast<double>(num_beams - 1);
+    sweep.ranges_m.reserve(num_beams);
     for (std::size_t i = 0; i < num_beams; ++i) {
       const std::string_view word = words.next();
       const std::optional<float> range_m = parse_range(word, 1.0);
       if (!range_m) throw lines_.error("reading " + std::to_string(i + 1) + " is '" + std::string(word) + "'");
-      scan.ranges_m.push_back(*range_m);
+      sweep.ranges_m.push_back(*range_m);
     }
-    lines_.require_plausible(scan);
-    return scan;
+    lines_.require_plausible(sweep);
+    return sweep;
   }
 
-  void add(Sweep scan) {
-    const auto wanted = static_cast<std::size_t>(options_.sub_scans_per_position);
+  void add(Sweep sweep) {
+    const auto wanted = static_cast<std::size_t>(options_.sweeps_per_scan);
     if (log_.scans.empty() || log_.scans.back().sweeps.size() == wanted) {
-      Scan position;
-      position.timestamp_s = static_cast<double>(log_.scans.size());  // nothing else is known
-      log_.scans.push_back(std::move(position));
+      Scan scan;
+      scan.timestamp_s = static_cast<double>(log_.scans.size());  // nothing else is known
+      log_.scans.push_back(std::move(scan));
     }
     std::vector<Sweep>& sweeps = log_.scans.back().sweeps;
-    scan.nominal_heading_rad = wrap_angle(static_cast<double>(sweeps.size()) * options_.sub_scan_turn_rad);
-    sweeps.push_back(std::move(scan));
+    sweep.nominal_heading_rad = wrap_angle(static_cast<double>(sweeps.size()) * options_.sweep_turn_rad);
+    sweeps.push_back(std::move(sweep));
   }
 
-  void warn_of_incomplete_position() {
+  void warn_of_incomplete_scan() {
     const std::size_t got = log_.scans.back().sweeps.size();
-    const auto wanted = static_cast<std::size_t>(options_.sub_scans_per_position);
+    const auto wanted = static_cast<std::size_t>(options_.sweeps_per_scan);
     if (got == wanted) return;
     log_.warnings.push_back(source_.path() + ": the last position has only " + std::to_string(got) + " of " +
                             std::to_string(wanted) + " sub-scans");

@@ -74,9 +74,9 @@ class CarmenReader {
     while (const std::optional<std::string_view> line = lines_.next()) read_line(*line);
     choice_.report(source_.path(), log_);
     finish_log(source_, log_);
-    for (Scan& position : log_.scans) {
-      for (Sweep& scan : position.sweeps) {
-        if (scan.sensor_label == "FLASER") scan.max_range_m = param_max_range_m_;  // may come after the first scans
+    for (Scan& scan : log_.scans) {
+      for (Sweep& sweep : scan.sweeps) {
+        if (sweep.sensor_label == "FLASER") sweep.max_range_m = param_max_range_m_;  // may come after the first scans
       }
     }
     return std::move(log_);
@@ -116,20 +116,20 @@ class CarmenReader {
   }
 
   void read_flaser(Words& words) {
-    Sweep scan;
-    scan.ranges_m = read_ranges(words, lines_);
-    set_flaser_angles(scan);
-    scan.sensor_label = "FLASER";
-    add(std::move(scan), read_poses(words, kFlaserPoses));
+    Sweep sweep;
+    sweep.ranges_m = read_ranges(words, lines_);
+    set_flaser_angles(sweep);
+    sweep.sensor_label = "FLASER";
+    add(std::move(sweep), read_poses(words, kFlaserPoses));
   }
 
-  void set_flaser_angles(Sweep& scan) {
-    const std::size_t num_beams = scan.ranges_m.size();
+  void set_flaser_angles(Sweep& sweep) {
+    const std::size_t num_beams = sweep.ranges_m.size();
     if (num_beams == 0) return;
     if (options_.fov_rad > 0.0) {
       if (num_beams < 2) throw lines_.error("one reading has no field of view, expected two or more");
-      scan.first_angle_rad = -options_.fov_rad / 2;
-      scan.angle_step_rad = options_.fov_rad / static_cast<double>(num_beams - 1);
+      sweep.first_angle_rad = -options_.fov_rad / 2;
+      sweep.angle_step_rad = options_.fov_rad / static_cast<double>(num_beams - 1);
       return;
     }
     const std::optional<double> step_rad = flaser_step_rad(num_beams);
@@ -137,39 +137,39 @@ class CarmenReader {
       throw lines_.error("a FLASER with " + std::to_string(num_beams) +
                          " readings has no convention for its angles (180, 181, 360 and 361 have); give --fov-deg");
     }
-    scan.first_angle_rad = kFlaserFirstAngle_rad;
-    scan.angle_step_rad = *step_rad;
+    sweep.first_angle_rad = kFlaserFirstAngle_rad;
+    sweep.angle_step_rad = *step_rad;
   }
 
   void read_robot_laser(Words& words) {
-    Sweep scan;
+    Sweep sweep;
     words.skip(1);  // laser type
     const double start_rad = read_finite(words, lines_, "the start angle");
     const double fov_rad = read_finite(words, lines_, "the field of view");
     const double resolution_rad = read_finite(words, lines_, "the angular resolution");
-    scan.max_range_m = std::max(0.0, read_finite(words, lines_, "the maximum range"));
+    sweep.max_range_m = std::max(0.0, read_finite(words, lines_, "the maximum range"));
     words.skip(2);  // accuracy, remission mode
-    scan.ranges_m = read_ranges(words, lines_);
-    scan.sensor_label = "ROBOTLASER1";
+    sweep.ranges_m = read_ranges(words, lines_);
+    sweep.sensor_label = "ROBOTLASER1";
 
-    set_robot_laser_angles(start_rad, fov_rad, resolution_rad, scan);
+    set_robot_laser_angles(start_rad, fov_rad, resolution_rad, sweep);
     skip_remissions(words);
-    add(std::move(scan), read_poses(words, kRobotLaserPoses));
+    add(std::move(sweep), read_poses(words, kRobotLaserPoses));
   }
 
-  void set_robot_laser_angles(double start_rad, double fov_rad, double resolution_rad, Sweep& scan) {
+  void set_robot_laser_angles(double start_rad, double fov_rad, double resolution_rad, Sweep& sweep) {
     StatedAngles stated;
     stated.first_rad = start_rad;
     if (resolution_rad != 0.0) stated.step_rad = resolution_rad;
     if (fov_rad != 0.0) stated.last_rad = start_rad + (resolution_rad < 0.0 ? -std::abs(fov_rad) : fov_rad);
-    const std::optional<EvenBeams> beams = even_beams(stated, scan.ranges_m.size());
+    const std::optional<EvenBeams> beams = even_beams(stated, sweep.ranges_m.size());
     if (!beams) {
       throw lines_.error(
           "neither the angular resolution nor the field of view says where the beams point, expected "
           "one that is not 0 and makes at most a full turn");
     }
-    scan.first_angle_rad = beams->first_rad;
-    scan.angle_step_rad = beams->step_rad;
+    sweep.first_angle_rad = beams->first_rad;
+    sweep.angle_step_rad = beams->step_rad;
     if (beams->source != AngleSource::kAsStated) warn_of_angles(beams->source);
   }
 
@@ -215,10 +215,10 @@ class CarmenReader {
     return read;
   }
 
-  void add(Sweep scan, const PosesAndTime& poses) {
-    scan.robot_from_sensor = mount_;
+  void add(Sweep sweep, const PosesAndTime& poses) {
+    sweep.robot_from_sensor = mount_;
     mount_ = MountPose{};
-    lines_.require_plausible(scan);
+    lines_.require_plausible(sweep);
     lines_.refuse(implausible_time(poses.timestamp_s));
     if (!joins_previous_ || log_.scans.empty()) {
       log_.scans.emplace_back();
@@ -226,7 +226,7 @@ class CarmenReader {
       log_.scans.back().recorded_heading_rad = poses.heading_rad;
     }
     joins_previous_ = false;
-    log_.scans.back().sweeps.push_back(std::move(scan));
+    log_.scans.back().sweeps.push_back(std::move(sweep));
   }
 
   ByteSource& source_;

@@ -18,20 +18,20 @@ namespace {
 
 constexpr const char* kHeader = "# CARMEN log written by shapemap; poses are estimates, zero where there are none\n";
 
-bool fits_flaser(const Sweep& scan) {
-  if (!scan.is_evenly_spaced()) return false;
-  const std::optional<double> step_rad = flaser_step_rad(scan.ranges_m.size());
-  return step_rad && std::abs(scan.angle_step_rad - *step_rad) < 1e-9 &&
-         std::abs(scan.first_angle_rad - kFlaserFirstAngle_rad) < 1e-9 && mount_with_heading(scan) == MountPose{};
+bool fits_flaser(const Sweep& sweep) {
+  if (!sweep.is_evenly_spaced()) return false;
+  const std::optional<double> step_rad = flaser_step_rad(sweep.ranges_m.size());
+  return step_rad && std::abs(sweep.angle_step_rad - *step_rad) < 1e-9 &&
+         std::abs(sweep.first_angle_rad - kFlaserFirstAngle_rad) < 1e-9 && mount_with_heading(sweep) == MountPose{};
 }
 
 /// The maximum range of all scans, or 0, when FLASER lines can hold the log; nothing when they cannot. One kind of line
 /// for the whole log, since readers take two kinds for two lasers.
 std::optional<double> flaser_max_range_m(const Log& log) {
   std::optional<double> max_range_m;
-  for (const Scan& position : log.scans) {
-    if (position.sweeps.size() != 1 || !fits_flaser(position.sweeps.front())) return std::nullopt;
-    const double scan_max_m = position.sweeps.front().max_range_m;
+  for (const Scan& scan : log.scans) {
+    if (scan.sweeps.size() != 1 || !fits_flaser(scan.sweeps.front())) return std::nullopt;
+    const double scan_max_m = scan.sweeps.front().max_range_m;
     if (max_range_m && *max_range_m != scan_max_m) return std::nullopt;
     max_range_m = scan_max_m;
   }
@@ -62,16 +62,16 @@ class CarmenText {
 };
 
 /// Every reading that is a hit by the scan's own limits, 0 for the others: CARMEN knows no minimum and no flags.
-void write_ranges(const Sweep& scan, CarmenText& line) {
-  const RangeLimits limits = range_limits(scan, ReturnOptions{});
-  line << scan.ranges_m.size();
+void write_ranges(const Sweep& sweep, CarmenText& line) {
+  const RangeLimits limits = range_limits(sweep, ReturnOptions{});
+  line << sweep.ranges_m.size();
   std::string text;
-  for (const float range_m : scan.ranges_m) {
+  for (const float range_m : sweep.ranges_m) {
     text += ' ';
     if (is_return(range_m, limits)) {
       append_number(text, range_m);
     } else {
-      append_number(text, scan.max_range_m > 0.0 ? static_cast<float>(scan.max_range_m) : 0.0F);
+      append_number(text, sweep.max_range_m > 0.0 ? static_cast<float>(sweep.max_range_m) : 0.0F);
     }
   }
   line << text;
@@ -79,26 +79,26 @@ void write_ranges(const Sweep& scan, CarmenText& line) {
 
 void write_time(double timestamp_s, CarmenText& line) { line << timestamp_s << " shapemap" << timestamp_s << "\n"; }
 
-void write_flaser(const Sweep& scan, const Pose2& map_from_robot, double timestamp_s, CarmenText& line) {
+void write_flaser(const Sweep& sweep, const Pose2& map_from_robot, double timestamp_s, CarmenText& line) {
   line << "FLASER";
-  write_ranges(scan, line);
+  write_ranges(sweep, line);
   line << map_from_robot << map_from_robot;
   write_time(timestamp_s, line);
 }
 
 void write_robot_laser(const Sweep& clockwise_or_not, const Pose2& map_from_robot, double timestamp_s,
                        CarmenText& line) {
-  const Sweep scan = counterclockwise(on_even_beams(clockwise_or_not));
-  const MountPose mount = mount_with_heading(scan);
+  const Sweep sweep = counterclockwise(on_even_beams(clockwise_or_not));
+  const MountPose mount = mount_with_heading(sweep);
   if (!(mount == MountPose{})) {
     line << "# shapemap mount" << mount.x_m << mount.y_m << mount.z_m << mount.yaw_rad << mount.pitch_rad
          << mount.roll_rad << "\n";
   }
-  const double num_steps = static_cast<double>(scan.ranges_m.size()) - 1.0;
-  line << "ROBOTLASER1 0" << scan.first_angle_rad << scan.angle_step_rad * num_steps << scan.angle_step_rad
-       << scan.max_range_m << " 0 0";
-  write_ranges(scan, line);
-  line << " 0" << map_from_robot * robot_from_sensor2(scan) << map_from_robot << " 0 0 0 0 0";
+  const double num_steps = static_cast<double>(sweep.ranges_m.size()) - 1.0;
+  line << "ROBOTLASER1 0" << sweep.first_angle_rad << sweep.angle_step_rad * num_steps << sweep.angle_step_rad
+       << sweep.max_range_m << " 0 0";
+  write_ranges(sweep, line);
+  line << " 0" << map_from_robot * robot_from_sensor2(sweep) << map_from_robot << " 0 0 0 0 0";
   write_time(timestamp_s, line);
 }
 
@@ -113,17 +113,17 @@ void write_carmen(const Log& log, const LogPoses* poses, ByteSink& sink) {
     sink.write(line.text());
   }
   for (std::size_t i = 0; i < log.scans.size(); ++i) {
-    const Scan& position = log.scans[i];
+    const Scan& scan = log.scans[i];
     const Pose2 map_from_robot = poses != nullptr ? poses->map_from_robot[i] : Pose2{};
     bool is_first = true;
-    for (const Sweep& scan : position.sweeps) {
+    for (const Sweep& sweep : scan.sweeps) {
       CarmenText line;
       if (!is_first) line << "# shapemap same-position\n";
       is_first = false;
       if (flaser_max_m) {
-        write_flaser(scan, map_from_robot, position.timestamp_s, line);
+        write_flaser(sweep, map_from_robot, scan.timestamp_s, line);
       } else {
-        write_robot_laser(scan, map_from_robot, position.timestamp_s, line);
+        write_robot_laser(sweep, map_from_robot, scan.timestamp_s, line);
       }
       sink.write(line.text());
     }

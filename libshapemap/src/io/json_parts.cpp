@@ -40,9 +40,7 @@ Json ranked_json(const RankedPose& ranked) {
           {"partners", ranked.partners}};
 }
 
-bool was_aligned(const ScanResult& position) {
-  return position.alignment.status != MatchStatus::kNoShape || !position.reason.empty();
-}
+bool was_aligned(const ScanResult& scan) { return scan.match.status != MatchStatus::kNoShape || !scan.reason.empty(); }
 
 double shown(double stored, double unit) {
   char text[32];

@@ -80,9 +80,9 @@ void settle_range_unit(const std::string& path, RangeUnit unit, Log& log) {
 }
 
 void turn_upside_down(Log& log) {
-  for (Scan& position : log.scans) {
-    for (Sweep& scan : position.sweeps) {
-      scan.robot_from_sensor.roll_rad = wrap_angle(scan.robot_from_sensor.roll_rad + kPi);
+  for (Scan& scan : log.scans) {
+    for (Sweep& sweep : scan.sweeps) {
+      sweep.robot_from_sensor.roll_rad = wrap_angle(sweep.robot_from_sensor.roll_rad + kPi);
     }
   }
 }
@@ -110,13 +110,13 @@ std::string what_is_lost(const Log& log, LogFormat format) {
   bool uneven = false;
   bool timed = false;
   bool intense = false;
-  for (const Scan& position : log.scans) {
-    references = references || position.reference_pose.has_value();
-    for (const Sweep& scan : position.sweeps) {
-      headings = headings || scan.nominal_heading_rad != 0.0;
-      uneven = uneven || !scan.is_evenly_spaced();
-      timed = timed || scan.start_s != 0.0 || scan.beam_time_step_s > 0.0 || !scan.beam_times_s.empty();
-      intense = intense || !scan.intensities.empty();
+  for (const Scan& scan : log.scans) {
+    references = references || scan.reference_pose.has_value();
+    for (const Sweep& sweep : scan.sweeps) {
+      headings = headings || sweep.nominal_heading_rad != 0.0;
+      uneven = uneven || !sweep.is_evenly_spaced();
+      timed = timed || sweep.start_s != 0.0 || sweep.beam_time_step_s > 0.0 || !sweep.beam_times_s.empty();
+      intense = intense || !sweep.intensities.empty();
     }
   }
   std::string lost;

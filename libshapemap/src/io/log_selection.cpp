@@ -8,7 +8,7 @@
 
 namespace shapemap {
 
-Log select_positions(Log log, const SelectionOptions& options) {
+Log select_scans(Log log, const SelectionOptions& options) {
   validate(options);
   const std::size_t num_scans = log.scans.size();
   const auto skip = static_cast<std::size_t>(options.skip);

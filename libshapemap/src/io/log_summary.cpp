@@ -17,39 +17,39 @@ struct Count {
   std::size_t num_returns = 0;
 };
 
-LogSummary::Sensor first_seen(const Sweep& scan) {
+LogSummary::Sensor first_seen(const Sweep& sweep) {
   LogSummary::Sensor sensor;
-  sensor.label = scan.sensor_label;
-  sensor.max_range_m = scan.max_range_m;
-  sensor.is_upside_down = is_upside_down(scan.robot_from_sensor);
+  sensor.label = sweep.sensor_label;
+  sensor.max_range_m = sweep.max_range_m;
+  sensor.is_upside_down = is_upside_down(sweep.robot_from_sensor);
   return sensor;
 }
 
-double fov_rad(const Sweep& scan) {
-  if (scan.is_evenly_spaced()) return std::abs(scan.angle_step_rad) * static_cast<double>(scan.ranges_m.size() - 1);
-  const auto [lowest, highest] = std::minmax_element(scan.beam_angles_rad.begin(), scan.beam_angles_rad.end());
+double fov_rad(const Sweep& sweep) {
+  if (sweep.is_evenly_spaced()) return std::abs(sweep.angle_step_rad) * static_cast<double>(sweep.ranges_m.size() - 1);
+  const auto [lowest, highest] = std::minmax_element(sweep.beam_angles_rad.begin(), sweep.beam_angles_rad.end());
   return *highest - *lowest;
 }
 
-void add_beams(const Sweep& scan, LogSummary::Sensor& sensor) {
-  const std::size_t num_beams = scan.ranges_m.size();
+void add_beams(const Sweep& sweep, LogSummary::Sensor& sensor) {
+  const std::size_t num_beams = sweep.ranges_m.size();
   if (num_beams == 0) {
     ++sensor.num_without_readings;
     return;
   }
   sensor.fewest_beams = sensor.most_beams == 0 ? num_beams : std::min(sensor.fewest_beams, num_beams);
   sensor.most_beams = std::max(sensor.most_beams, num_beams);
-  sensor.has_uneven_beams = sensor.has_uneven_beams || !scan.is_evenly_spaced();
-  sensor.fov_rad = std::max(sensor.fov_rad, fov_rad(scan));
-  sensor.sweep_s = std::max(sensor.sweep_s, scan.beam_time_s(num_beams - 1) - scan.beam_time_s(0));
+  sensor.has_uneven_beams = sensor.has_uneven_beams || !sweep.is_evenly_spaced();
+  sensor.fov_rad = std::max(sensor.fov_rad, fov_rad(sweep));
+  sensor.sweep_s = std::max(sensor.sweep_s, sweep.beam_time_s(num_beams - 1) - sweep.beam_time_s(0));
 }
 
-void add(const Sweep& scan, LogSummary::Sensor& sensor, Count& count) {
+void add(const Sweep& sweep, LogSummary::Sensor& sensor, Count& count) {
   ++sensor.num_sweeps;
-  add_beams(scan, sensor);
+  add_beams(sweep, sensor);
   const std::size_t num_returns_before = count.num_returns;
-  const RangeLimits limits = range_limits(scan, ReturnOptions{});
-  for (const float range_m : scan.ranges_m) {
+  const RangeLimits limits = range_limits(sweep, ReturnOptions{});
+  for (const float range_m : sweep.ranges_m) {
     ++count.num_readings;
     if (!is_return(range_m, limits)) continue;
     const double hit_m = range_m;
@@ -57,7 +57,7 @@ void add(const Sweep& scan, LogSummary::Sensor& sensor, Count& count) {
     sensor.longest_return_m = std::max(sensor.longest_return_m, hit_m);
     ++count.num_returns;
   }
-  if (!scan.ranges_m.empty() && count.num_returns == num_returns_before) ++sensor.num_without_returns;
+  if (!sweep.ranges_m.empty() && count.num_returns == num_returns_before) ++sensor.num_without_returns;
 }
 
 }  // namespace
@@ -80,15 +80,15 @@ LogSummary summarise(const Log& log, std::size_t first, std::size_t last) {
   }
   std::vector<Count> counts;
   std::map<std::string, std::size_t, std::less<>> index_of_label;  // a damaged log may have a label for each scan
-  for (auto position = begin; position != end; ++position) {
-    for (const Sweep& scan : position->sweeps) {
-      const auto [known, is_new] = index_of_label.try_emplace(scan.sensor_label, summary.sensors.size());
+  for (auto scan = begin; scan != end; ++scan) {
+    for (const Sweep& sweep : scan->sweeps) {
+      const auto [known, is_new] = index_of_label.try_emplace(sweep.sensor_label, summary.sensors.size());
       const std::size_t index = known->second;
       if (is_new) {
-        summary.sensors.push_back(first_seen(scan));
+        summary.sensors.push_back(first_seen(sweep));
         counts.emplace_back();
       }
-      add(scan, summary.sensors[index], counts[index]);
+      add(sweep, summary.sensors[index], counts[index]);
     }
   }
   for (std::size_t i = 0; i < counts.size(); ++i) {

@@ -21,13 +21,13 @@ namespace {
 /// A power cut costs the work of about so long; syncing each alignment would take longer than making it.
 constexpr std::chrono::seconds kSyncEvery{1};
 
-constexpr std::uint64_t kMostPositions = std::uint64_t{1} << 31U;
+constexpr std::uint64_t kMostScans = std::uint64_t{1} << 31U;
 
 [[noreturn]] void fail(const std::string& path, const std::string& what) {
   throw OutputError("cannot write '" + path + "': " + what);
 }
 
-/// One number for a key; positions are fewer than kMostPositions.
+/// One number for a key; positions are fewer than kMostScans.
 std::uint64_t packed(const MatchKey& key) {
   return std::uint64_t{key.reference} << 33U | std::uint64_t{key.query} << 2U | static_cast<std::uint64_t>(key.search);
 }
@@ -48,15 +48,15 @@ std::string read_at(int descriptor, std::uint64_t offset, std::size_t count, con
 }
 
 /// The whole record that begins at `offset`, if there is one.
-std::optional<AlignmentRecord> read_record(int descriptor, std::uint64_t offset, const std::string& path) {
+std::optional<MatchRecord> read_record(int descriptor, std::uint64_t offset, const std::string& path) {
   const std::string head_bytes = read_at(descriptor, offset, kRecordHeadBytes, path);
   if (head_bytes.size() < kRecordHeadBytes) return std::nullopt;
   const std::optional<RecordHead> head = record_head(head_bytes);
   if (!head) return std::nullopt;
-  return alignment_record(*head, read_at(descriptor, offset + kRecordHeadBytes, head->num_bytes, path));
+  return match_record(*head, read_at(descriptor, offset + kRecordHeadBytes, head->num_bytes, path));
 }
 
-std::uint64_t record_size(const AlignmentRecord& record) { return record_bytes(record.key, record.candidates).size(); }
+std::uint64_t record_size(const MatchRecord& record) { return record_bytes(record.key, record.candidates).size(); }
 
 bool is_synced(int descriptor) { return ::fdatasync(descriptor) == 0 || errno == EINVAL || errno == EROFS; }
 
@@ -72,8 +72,8 @@ void sync_folder_of(const std::string& path) {
 }  // namespace
 
 MatchCacheFile::MatchCacheFile(std::string path, StateOpening opening, const Log& log, const MappingOptions& options)
-    : path_(std::move(path)), num_positions_(log.scans.size()) {
-  if (num_positions_ >= kMostPositions) fail(path_, "the log has too many positions");
+    : path_(std::move(path)), num_scans_(log.scans.size()) {
+  if (num_scans_ >= kMostScans) fail(path_, "the log has too many positions");
   const std::string header = state_header(log, options);
   try {
     open(opening);
@@ -142,8 +142,8 @@ void MatchCacheFile::index_records(std::uint64_t first) {
   const auto size = static_cast<std::uint64_t>(status.st_size);
   end_ = first;
   while (end_ < size) {
-    const std::optional<AlignmentRecord> record = read_record(descriptor_, end_, path_);
-    if (!record || record->key.reference >= num_positions_ || record->key.query >= num_positions_) break;
+    const std::optional<MatchRecord> record = read_record(descriptor_, end_, path_);
+    if (!record || record->key.reference >= num_scans_ || record->key.query >= num_scans_) break;
     record_at_.emplace(packed(record->key), end_);
     end_ += record_size(*record);
   }
@@ -162,7 +162,7 @@ std::optional<std::vector<MatchCandidate>> MatchCacheFile::find(const MatchKey& 
     if (found == record_at_.end()) return std::nullopt;
     offset = found->second;
   }
-  std::optional<AlignmentRecord> record = read_record(descriptor_, offset, path_);
+  std::optional<MatchRecord> record = read_record(descriptor_, offset, path_);
   if (!record || packed(record->key) != packed(key)) return std::nullopt;  // changed meanwhile: it is made again
   return std::move(record->candidates);
 }

@@ -43,16 +43,16 @@ class Fingerprint {
 /// All of a log that alignments depend on.
 std::string fingerprint(const Log& log) {
   Fingerprint print;
-  for (const Scan& position : log.scans) {
-    print.add(static_cast<std::uint64_t>(position.sweeps.size()));
-    for (const Sweep& scan : position.sweeps) {
-      print.add(static_cast<std::uint64_t>(scan.ranges_m.size()));
-      for (const float range_m : scan.ranges_m) print.add(range_m);
-      for (const double angle_rad : scan.beam_angles_rad) print.add(angle_rad);
-      const MountPose& mount = scan.robot_from_sensor;
+  for (const Scan& scan : log.scans) {
+    print.add(static_cast<std::uint64_t>(scan.sweeps.size()));
+    for (const Sweep& sweep : scan.sweeps) {
+      print.add(static_cast<std::uint64_t>(sweep.ranges_m.size()));
+      for (const float range_m : sweep.ranges_m) print.add(range_m);
+      for (const double angle_rad : sweep.beam_angles_rad) print.add(angle_rad);
+      const MountPose& mount = sweep.robot_from_sensor;
       for (const double number :
-           {scan.first_angle_rad, scan.angle_step_rad, scan.min_range_m, scan.max_range_m, mount.x_m, mount.y_m,
-            mount.z_m, mount.yaw_rad, mount.pitch_rad, mount.roll_rad, scan.nominal_heading_rad}) {
+           {sweep.first_angle_rad, sweep.angle_step_rad, sweep.min_range_m, sweep.max_range_m, mount.x_m, mount.y_m,
+            mount.z_m, mount.yaw_rad, mount.pitch_rad, mount.roll_rad, sweep.nominal_heading_rad}) {
         print.add(number);
       }
     }

@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::size_t kWordBytes = 8;
 constexpr std::size_t kKeyBytes = 3 * kWordBytes;
-constexpr std::size_t kHypothesisBytes = 26 * kWordBytes;
-constexpr std::size_t kMostHypotheses = 1000;  // far more than the options allow
-constexpr std::size_t kMostBytes = kKeyBytes + kMostHypotheses * kHypothesisBytes;
+constexpr std::size_t kCandidateBytes = 26 * kWordBytes;
+constexpr std::size_t kMostCandidates = 1000;  // far more than the options allow
+constexpr std::size_t kMostBytes = kKeyBytes + kMostCandidates * kCandidateBytes;
 
 // What an alignment can say: far more than any search gives, so that only damage is kept out.
 constexpr double kMostDistance_m = 1e4;
@@ -36,8 +36,8 @@ std::uint64_t word_at(std::string_view bytes, std::size_t offset) {
 }
 
 /// Calls `visit` for each number of a hypothesis, in the order of the file.
-template <class Hypothesis, class Visit>
-void visit_numbers(Hypothesis& h, Visit&& visit) {
+template <class Candidate, class Visit>
+void visit_numbers(Candidate& h, Visit&& visit) {
   for (auto* pose : {&h.ref_from_query, &h.fit.ref_from_query}) {
     visit(pose->x_m);
     visit(pose->y_m);
@@ -123,7 +123,7 @@ std::uint32_t checksum_of(std::string_view bytes) {
 
 std::string record_bytes(const MatchKey& key, const std::vector<MatchCandidate>& candidates) {
   std::string body;
-  body.reserve(kKeyBytes + kHypothesisBytes * candidates.size());
+  body.reserve(kKeyBytes + kCandidateBytes * candidates.size());
   append_word(body, key.reference);
   append_word(body, key.query);
   append_word(body, static_cast<std::uint64_t>(key.search));
@@ -138,17 +138,17 @@ std::string record_bytes(const MatchKey& key, const std::vector<MatchCandidate>&
 std::optional<RecordHead> record_head(std::string_view bytes) {
   const RecordHead head{u32_at(bytes, 0), u32_at(bytes, 4)};
   if (head.num_bytes < kKeyBytes || head.num_bytes > kMostBytes) return std::nullopt;
-  if ((head.num_bytes - kKeyBytes) % kHypothesisBytes != 0) return std::nullopt;
+  if ((head.num_bytes - kKeyBytes) % kCandidateBytes != 0) return std::nullopt;
   return head;
 }
 
-std::optional<AlignmentRecord> alignment_record(const RecordHead& head, std::string_view body) {
+std::optional<MatchRecord> match_record(const RecordHead& head, std::string_view body) {
   if (body.size() != head.num_bytes || checksum_of(body) != head.checksum) return std::nullopt;
   const std::uint64_t search = word_at(body, 2 * kWordBytes);
   if (search > static_cast<std::uint64_t>(SearchKind::kLoop)) return std::nullopt;
-  AlignmentRecord record;
+  MatchRecord record;
   record.key = {word_at(body, 0), word_at(body, kWordBytes), static_cast<SearchKind>(search)};
-  for (std::size_t at = kKeyBytes; at < body.size(); at += kHypothesisBytes) {
+  for (std::size_t at = kKeyBytes; at < body.size(); at += kCandidateBytes) {
     std::optional<MatchCandidate> candidate = candidate_at(body, at);
     if (!candidate) return std::nullopt;
     record.candidates.push_back(*std::move(candidate));

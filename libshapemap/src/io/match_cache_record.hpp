@@ -20,7 +20,7 @@ struct RecordHead {
   std::uint32_t checksum = 0;   ///< of these
 };
 
-struct AlignmentRecord {
+struct MatchRecord {
   MatchKey key;
   std::vector<MatchCandidate> candidates;
 };
@@ -36,6 +36,6 @@ std::string record_bytes(const MatchKey& key, const std::vector<MatchCandidate>&
 std::optional<RecordHead> record_head(std::string_view bytes);
 
 /// Nothing for a body that is damaged.
-std::optional<AlignmentRecord> alignment_record(const RecordHead& head, std::string_view body);
+std::optional<MatchRecord> match_record(const RecordHead& head, std::string_view body);
 
 }  // namespace shapemap

@@ -6,7 +6,7 @@
 namespace shapemap {
 
 /// The mount seen from the position's first heading: the sub-scan's nominal turn becomes part of it.
-MountPose mount_with_heading(const Sweep& scan);
+MountPose mount_with_heading(const Sweep& sweep);
 
 inline bool operator==(const MountPose& a, const MountPose& b) {
   return a.x_m == b.x_m && a.y_m == b.y_m && a.z_m == b.z_m && a.yaw_rad == b.yaw_rad && a.pitch_rad == b.pitch_rad &&
@@ -14,6 +14,6 @@ inline bool operator==(const MountPose& a, const MountPose& b) {
 }
 
 /// The same readings from right to left, as formats without a scan direction want them.
-Sweep counterclockwise(Sweep scan);
+Sweep counterclockwise(Sweep sweep);
 
 }  // namespace shapemap

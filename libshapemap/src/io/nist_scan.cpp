@@ -22,7 +22,7 @@ class FieldReader {
 
   /// A field that may stand with a sensor or a scan; false when it is none.
   bool read_shared(std::string_view field, NistHeader& header) {
-    Sweep& scan = header.scan;
+    Sweep& sweep = header.sweep;
     if (field == "first_angle") {
       header.angles.first_rad = any_number("first_angle") * units_.radians_per_unit;
       header.has_own_angles = true;
@@ -33,11 +33,11 @@ class FieldReader {
       header.angles.last_rad = any_number("last_angle") * units_.radians_per_unit;
       header.has_own_angles = true;
     } else if (field == "max_range") {
-      scan.max_range_m = positive_or_unknown(any_number("max_range") * units_.metres_per_unit);
+      sweep.max_range_m = positive_or_unknown(any_number("max_range") * units_.metres_per_unit);
     } else if (field == "min_range") {
-      scan.min_range_m = positive_or_unknown(any_number("min_range") * units_.metres_per_unit);
+      sweep.min_range_m = positive_or_unknown(any_number("min_range") * units_.metres_per_unit);
     } else if (field == "time_step") {
-      scan.beam_time_step_s = positive_or_unknown(any_number("time_step"));
+      sweep.beam_time_step_s = positive_or_unknown(any_number("time_step"));
     } else {
       return false;
     }
@@ -139,48 +139,48 @@ struct Lists {
   std::vector<double> intensities;
 };
 
-void require_as_many(std::size_t count, const char* what, const Sweep& scan, const LineReader& lines) {
-  if (count == scan.ranges_m.size()) return;
-  throw lines.error(std::to_string(count) + " " + what + " for " + std::to_string(scan.ranges_m.size()) + " readings");
+void require_as_many(std::size_t count, const char* what, const Sweep& sweep, const LineReader& lines) {
+  if (count == sweep.ranges_m.size()) return;
+  throw lines.error(std::to_string(count) + " " + what + " for " + std::to_string(sweep.ranges_m.size()) + " readings");
 }
 
-void check_num_readings(const NistHeader& sensor, const Sweep& scan, const LineReader& lines) {
-  const std::size_t num_values = scan.ranges_m.size();
+void check_num_readings(const NistHeader& sensor, const Sweep& sweep, const LineReader& lines) {
+  const std::size_t num_values = sweep.ranges_m.size();
   if (!sensor.num_beams || num_values == *sensor.num_beams) return;
   throw lines.error((num_values < *sensor.num_beams ? "too few values: " : "too many values: ") +
-                    std::to_string(num_values) + " readings, but sensor '" + scan.sensor_label + "' has " +
+                    std::to_string(num_values) + " readings, but sensor '" + sweep.sensor_label + "' has " +
                     std::to_string(*sensor.num_beams) + " beams");
 }
 
-void set_even_angles(const NistHeader& header, Sweep& scan, const LineReader& lines, NistOddities& oddities) {
-  const std::optional<EvenBeams> beams = even_beams(header.angles, scan.ranges_m.size());
+void set_even_angles(const NistHeader& header, Sweep& sweep, const LineReader& lines, NistOddities& oddities) {
+  const std::optional<EvenBeams> beams = even_beams(header.angles, sweep.ranges_m.size());
   if (!beams && header.has_own_angles) {
     ++oddities.num_without;
-    for (auto* readings : {&scan.ranges_m, &scan.beam_times_s, &scan.intensities}) readings->clear();
+    for (auto* readings : {&sweep.ranges_m, &sweep.beam_times_s, &sweep.intensities}) readings->clear();
     return;
   }
   if (!beams) {
-    throw lines.error("neither angle_step nor last_angle says where the " + std::to_string(scan.ranges_m.size()) +
+    throw lines.error("neither angle_step nor last_angle says where the " + std::to_string(sweep.ranges_m.size()) +
                       " beams point, expected a step that is not 0 and at most a full turn");
   }
-  scan.first_angle_rad = beams->first_rad;
-  scan.angle_step_rad = beams->step_rad;
+  sweep.first_angle_rad = beams->first_rad;
+  sweep.angle_step_rad = beams->step_rad;
   if (beams->source == AngleSource::kStep) ++oddities.num_by_step;
   if (beams->source == AngleSource::kLimits) ++oddities.num_by_limits;
 }
 
-void set_lists(const Lists& lists, Sweep& scan, const LineReader& lines) {
+void set_lists(const Lists& lists, Sweep& sweep, const LineReader& lines) {
   if (lists.has_times) {
-    require_as_many(lists.times_s.size(), "times", scan, lines);
-    scan.beam_times_s.assign(lists.times_s.begin(), lists.times_s.end());
+    require_as_many(lists.times_s.size(), "times", sweep, lines);
+    sweep.beam_times_s.assign(lists.times_s.begin(), lists.times_s.end());
   }
   if (lists.has_intensities) {
-    require_as_many(lists.intensities.size(), "intensities", scan, lines);
-    scan.intensities.assign(lists.intensities.begin(), lists.intensities.end());
+    require_as_many(lists.intensities.size(), "intensities", sweep, lines);
+    sweep.intensities.assign(lists.intensities.begin(), lists.intensities.end());
   }
   if (lists.has_angles) {
-    require_as_many(lists.angles_rad.size(), "angles", scan, lines);
-    set_beam_angles(scan, lists.angles_rad);
+    require_as_many(lists.angles_rad.size(), "angles", sweep, lines);
+    set_beam_angles(sweep, lists.angles_rad);
   }
 }
 
@@ -190,7 +190,7 @@ NistHeader read_nist_sensor(Words& words, const LineReader& lines, const NistUni
   const std::string name(words.next());
   if (name.empty()) throw lines.error("too few values: the sensor's name is missing");
   NistHeader sensor;
-  sensor.scan.sensor_label = name;
+  sensor.sweep.sensor_label = name;
   bool has_beams = false;
   FieldReader fields(words, lines, units);
   for (std::string_view field = words.next(); !field.empty(); field = words.next()) {
@@ -198,7 +198,7 @@ NistHeader read_nist_sensor(Words& words, const LineReader& lines, const NistUni
       sensor.num_beams = read_num_beams(words, lines);
       has_beams = true;
     } else if (field == "mount") {
-      fields.read_mount(sensor.scan.robot_from_sensor);
+      fields.read_mount(sensor.sweep.robot_from_sensor);
     } else if (!fields.read_shared(field, sensor)) {
       throw lines.error("'" + std::string(field) +
                         "' is no field of a sensor; expected beams, first_angle, angle_step, last_angle, max_range, "
@@ -213,15 +213,15 @@ Sweep read_nist_scan(Words& words, const LineReader& lines, const NistUnits& uni
                      NistOddities& oddities) {
   NistHeader header = sensor;
   header.has_own_angles = false;
-  Sweep& scan = header.scan;
+  Sweep& sweep = header.sweep;
   FieldReader fields(words, lines, units);
   Lists lists;
   bool has_ranges = false;
   if (words.next() != "heading") throw lines.error("expected 'heading' after the sensor's name");
-  scan.nominal_heading_rad = fields.angle_rad("heading");
+  sweep.nominal_heading_rad = fields.angle_rad("heading");
   for (std::string_view field = words.next(); !field.empty();) {
     if (field == "ranges") {
-      scan.ranges_m = fields.ranges_m();
+      sweep.ranges_m = fields.ranges_m();
       has_ranges = true;
     } else if (field == "angles") {
       lists.angles_rad = fields.finite_list("angle", units.radians_per_unit);
@@ -233,7 +233,7 @@ Sweep read_nist_scan(Words& words, const LineReader& lines, const NistUnits& uni
       lists.intensities = fields.list("intensity", 1.0);
       lists.has_intensities = true;
     } else if (field == "time") {
-      scan.start_s = fields.number("time");
+      sweep.start_s = fields.number("time");
     } else if (!fields.read_shared(field, header)) {
       throw lines.error("'" + std::string(field) + "' is no field of a scan; expected 'ranges', or before it time, " +
                         "first_angle, angle_step, last_angle, max_range, min_range, time_step, angles or times");
@@ -241,10 +241,10 @@ Sweep read_nist_scan(Words& words, const LineReader& lines, const NistUnits& uni
     field = is_list(field) ? fields.after_list() : words.next();
   }
   if (!has_ranges) throw lines.error("expected 'ranges' after the heading");
-  check_num_readings(sensor, scan, lines);
-  set_lists(lists, scan, lines);
-  if (!lists.has_angles) set_even_angles(header, scan, lines, oddities);
-  return std::move(scan);
+  check_num_readings(sensor, sweep, lines);
+  set_lists(lists, sweep, lines);
+  if (!lists.has_angles) set_even_angles(header, sweep, lines, oddities);
+  return std::move(sweep);
 }
 
 }  // namespace shapemap

@@ -21,7 +21,7 @@ struct NistUnits {
 
 /// What a `sensor` line says of the scans of a laser, and a `scan` line of one of them.
 struct NistHeader {
-  Sweep scan;                            ///< without readings
+  Sweep sweep;                           ///< without readings
   StatedAngles angles;                   ///< of evenly spaced beams
   std::optional<std::size_t> num_beams;  ///< nothing: any
   bool has_own_angles = false;           ///< something was said of them on this very line

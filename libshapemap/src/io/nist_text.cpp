@@ -30,7 +30,7 @@ class NistReader {
       const std::string_view keyword = words.next();
       if (!keyword.empty()) read_statement(keyword, words);
     }
-    drop_empty_positions();
+    drop_empty_scans();
     choice_.report(source_.path(), log_);
     warn_of_oddities();
     finish_log(source_, log_);
@@ -92,8 +92,8 @@ class NistReader {
 
   void read_sensor(Words& words) {
     NistHeader sensor = read_nist_sensor(words, lines_, units_);
-    const std::string name = sensor.scan.sensor_label;
-    lines_.refuse(implausibility(sensor.scan));
+    const std::string name = sensor.sweep.sensor_label;
+    lines_.refuse(implausibility(sensor.sweep));
     lines_.refuse(implausible_count(sensors_.size(), "sensors"));
     if (!sensors_.emplace(name, std::move(sensor)).second) {
       throw lines_.error("sensor '" + name + "' is declared twice");
@@ -101,9 +101,9 @@ class NistReader {
   }
 
   void read_position(Words& words) {
-    Scan position;
-    position.timestamp_s = number(words, "the timestamp");
-    lines_.refuse(implausible_time(position.timestamp_s));
+    Scan scan;
+    scan.timestamp_s = number(words, "the timestamp");
+    lines_.refuse(implausible_time(scan.timestamp_s));
     lines_.refuse(implausible_count(log_.scans.size(), "positions"));
     const std::string_view field = words.next();
     if (field == "reference") {
@@ -112,12 +112,12 @@ class NistReader {
       pose.y_m = number(words, "reference") * units_.metres_per_unit;
       pose.theta_rad = number(words, "reference") * units_.radians_per_unit;
       lines_.refuse(implausibility(pose));
-      position.reference_pose = pose;
+      scan.reference_pose = pose;
     } else if (!field.empty()) {
       throw lines_.error("unexpected '" + std::string(field) + "', expected 'reference' or nothing");
     }
     expect_end(words, lines_);
-    log_.scans.push_back(std::move(position));
+    log_.scans.push_back(std::move(scan));
   }
 
   void read_scan(Words& words) {
@@ -125,9 +125,9 @@ class NistReader {
     const auto sensor = sensors_.find(name);
     if (sensor == sensors_.end()) throw lines_.error("sensor '" + name + "' is not declared above");
     if (log_.scans.empty()) throw lines_.error("a scan before the first position");
-    Sweep scan = read_nist_scan(words, lines_, units_, sensor->second, oddities_);
-    lines_.require_plausible(scan);
-    if (choice_.takes(name, false)) log_.scans.back().sweeps.push_back(std::move(scan));
+    Sweep sweep = read_nist_scan(words, lines_, units_, sensor->second, oddities_);
+    lines_.require_plausible(sweep);
+    if (choice_.takes(name, false)) log_.scans.back().sweeps.push_back(std::move(sweep));
   }
 
   void warn_of_oddities() {
@@ -140,10 +140,10 @@ class NistReader {
   }
 
   /// A position that was announced but has no scan, be it that its laser was not asked for or that the file ends.
-  void drop_empty_positions() {
+  void drop_empty_scans() {
     std::vector<Scan> kept;
-    for (Scan& position : log_.scans) {
-      if (!position.sweeps.empty()) kept.push_back(std::move(position));
+    for (Scan& scan : log_.scans) {
+      if (!scan.sweeps.empty()) kept.push_back(std::move(scan));
     }
     log_.scans = std::move(kept);
   }

@@ -38,17 +38,17 @@ struct Sensor {
 double angle_unit_rad(int version) { return version == 1 ? kDegree : 1.0; }
 
 /// The fields of a sensor that a scan does not share with `usual`; of the sensor itself, all that say something.
-std::string header_text(const Sweep& scan, const Sweep& usual, double unit_rad) {
+std::string header_text(const Sweep& sweep, const Sweep& usual, double unit_rad) {
   std::string text;
-  if (scan.is_evenly_spaced() && scan.first_angle_rad != usual.first_angle_rad) {
-    append(text, "first_angle", scan.first_angle_rad / unit_rad);
+  if (sweep.is_evenly_spaced() && sweep.first_angle_rad != usual.first_angle_rad) {
+    append(text, "first_angle", sweep.first_angle_rad / unit_rad);
   }
-  if (scan.is_evenly_spaced() && scan.angle_step_rad != usual.angle_step_rad) {
-    append(text, "angle_step", scan.angle_step_rad / unit_rad);
+  if (sweep.is_evenly_spaced() && sweep.angle_step_rad != usual.angle_step_rad) {
+    append(text, "angle_step", sweep.angle_step_rad / unit_rad);
   }
-  if (scan.max_range_m != usual.max_range_m) append(text, "max_range", scan.max_range_m);
-  if (scan.min_range_m != usual.min_range_m) append(text, "min_range", scan.min_range_m);
-  if (scan.beam_time_step_s != usual.beam_time_step_s) append(text, "time_step", scan.beam_time_step_s);
+  if (sweep.max_range_m != usual.max_range_m) append(text, "max_range", sweep.max_range_m);
+  if (sweep.min_range_m != usual.min_range_m) append(text, "min_range", sweep.min_range_m);
+  if (sweep.beam_time_step_s != usual.beam_time_step_s) append(text, "time_step", sweep.beam_time_step_s);
   return text;
 }
 
@@ -56,19 +56,19 @@ std::string header_text(const Sweep& scan, const Sweep& usual, double unit_rad) 
 class Sensors {
  public:
   explicit Sensors(const Log& log) {
-    for (const Scan& position : log.scans) {
-      for (const Sweep& scan : position.sweeps) {
-        const auto [known, is_new] = index_.emplace(key_of(scan), sensors_.size());
+    for (const Scan& scan : log.scans) {
+      for (const Sweep& sweep : scan.sweeps) {
+        const auto [known, is_new] = index_.emplace(key_of(sweep), sensors_.size());
         if (is_new) {
-          declare(scan);
-        } else if (sensors_[known->second].num_beams != scan.ranges_m.size()) {
+          declare(sweep);
+        } else if (sensors_[known->second].num_beams != sweep.ranges_m.size()) {
           sensors_[known->second].has_any_number = true;
         }
       }
     }
   }
 
-  const Sensor& of(const Sweep& scan) const { return sensors_[index_.at(key_of(scan))]; }
+  const Sensor& of(const Sweep& sweep) const { return sensors_[index_.at(key_of(sweep))]; }
 
   bool have_any_number() const {
     return std::any_of(sensors_.begin(), sensors_.end(), [](const Sensor& sensor) { return sensor.has_any_number; });
@@ -93,9 +93,9 @@ class Sensors {
  private:
   /// What the scans of one sensor share: label and mount.
   using Key = std::tuple<std::string, double, double, double, double, double, double>;
-  static Key key_of(const Sweep& scan) {
-    const MountPose& mount = scan.robot_from_sensor;
-    return {scan.sensor_label, mount.x_m, mount.y_m, mount.z_m, mount.yaw_rad, mount.pitch_rad, mount.roll_rad};
+  static Key key_of(const Sweep& sweep) {
+    const MountPose& mount = sweep.robot_from_sensor;
+    return {sweep.sensor_label, mount.x_m, mount.y_m, mount.z_m, mount.yaw_rad, mount.pitch_rad, mount.roll_rad};
   }
 
   static void append_mount(std::string& text, const MountPose& mount, double unit_rad) {
@@ -105,12 +105,12 @@ class Sensors {
     for (const double angle_rad : {mount.yaw_rad, mount.pitch_rad, mount.roll_rad}) append(text, angle_rad / unit_rad);
   }
 
-  void declare(const Sweep& scan) {
+  void declare(const Sweep& sweep) {
     Sensor sensor;
-    sensor.name = free_name(scan.sensor_label);
-    sensor.num_beams = scan.ranges_m.size();
-    sensor.has_any_number = scan.ranges_m.empty();
-    sensor.usual = scan;
+    sensor.name = free_name(sweep.sensor_label);
+    sensor.num_beams = sweep.ranges_m.size();
+    sensor.has_any_number = sweep.ranges_m.empty();
+    sensor.usual = sweep;
     for (auto* readings : {&sensor.usual.ranges_m, &sensor.usual.beam_times_s, &sensor.usual.intensities}) {
       readings->clear();
     }
@@ -134,16 +134,16 @@ class Sensors {
 };
 
 /// Whether `scan` has something that version 1 of the format cannot say.
-bool needs_version_2(const Sweep& scan, const Sensor& sensor) {
-  return !scan.is_evenly_spaced() || scan.start_s != 0.0 || scan.beam_time_step_s > 0.0 || !scan.beam_times_s.empty() ||
-         !scan.intensities.empty() || !header_text(scan, sensor.usual, 1.0).empty();
+bool needs_version_2(const Sweep& sweep, const Sensor& sensor) {
+  return !sweep.is_evenly_spaced() || sweep.start_s != 0.0 || sweep.beam_time_step_s > 0.0 ||
+         !sweep.beam_times_s.empty() || !sweep.intensities.empty() || !header_text(sweep, sensor.usual, 1.0).empty();
 }
 
 int version_for(const Log& log, const Sensors& sensors) {
   if (sensors.have_any_number()) return 2;
-  for (const Scan& position : log.scans) {
-    for (const Sweep& scan : position.sweeps) {
-      if (needs_version_2(scan, sensors.of(scan))) return 2;
+  for (const Scan& scan : log.scans) {
+    for (const Sweep& sweep : scan.sweeps) {
+      if (needs_version_2(sweep, sensors.of(sweep))) return 2;
     }
   }
   return 1;
@@ -160,15 +160,15 @@ void append_list(std::string& text, const char* name, const std::vector<Number>&
   }
 }
 
-void append_scan(std::string& text, const Sweep& scan, const Sensor& sensor, double unit_rad) {
+void append_scan(std::string& text, const Sweep& sweep, const Sensor& sensor, double unit_rad) {
   text += "scan " + sensor.name;
-  append(text, "heading", scan.nominal_heading_rad / unit_rad);
-  if (scan.start_s != 0.0) append(text, "time", scan.start_s);
-  text += header_text(scan, sensor.usual, unit_rad);
-  append_list(text, "angles", scan.beam_angles_rad);
-  append_list(text, "times", scan.beam_times_s);
+  append(text, "heading", sweep.nominal_heading_rad / unit_rad);
+  if (sweep.start_s != 0.0) append(text, "time", sweep.start_s);
+  text += header_text(sweep, sensor.usual, unit_rad);
+  append_list(text, "angles", sweep.beam_angles_rad);
+  append_list(text, "times", sweep.beam_times_s);
   text += " ranges";
-  for (const float range_m : scan.ranges_m) {
+  for (const float range_m : sweep.ranges_m) {
     text += ' ';
     if (std::isfinite(range_m) || range_m < 0.0F) {
       append_number(text, std::max(range_m, 0.0F));
@@ -176,7 +176,7 @@ void append_scan(std::string& text, const Sweep& scan, const Sensor& sensor, dou
       text += '-';
     }
   }
-  append_list(text, "intensities", scan.intensities);
+  append_list(text, "intensities", sweep.intensities);
   text += '\n';
 }
 
@@ -188,16 +188,16 @@ void write_nist(const Log& log, ByteSink& sink) {
   const double unit_rad = angle_unit_rad(version);
   sink.write(std::string(kNistName) + " " + std::to_string(version) + "\nunits m " + (version == 1 ? "deg" : "rad") +
              "\n" + sensors.text(unit_rad));
-  for (const Scan& position : log.scans) {
+  for (const Scan& scan : log.scans) {
     std::string text = "position";
-    append(text, position.timestamp_s);
-    if (position.reference_pose) {
-      append(text, "reference", position.reference_pose->x_m);
-      append(text, position.reference_pose->y_m);
-      append(text, position.reference_pose->theta_rad / unit_rad);
+    append(text, scan.timestamp_s);
+    if (scan.reference_pose) {
+      append(text, "reference", scan.reference_pose->x_m);
+      append(text, scan.reference_pose->y_m);
+      append(text, scan.reference_pose->theta_rad / unit_rad);
     }
     text += '\n';
-    for (const Sweep& scan : position.sweeps) append_scan(text, scan, sensors.of(scan), unit_rad);
+    for (const Sweep& sweep : scan.sweeps) append_scan(text, sweep, sensors.of(sweep), unit_rad);
     sink.write(text);
   }
 }

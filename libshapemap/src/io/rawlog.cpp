@@ -56,10 +56,10 @@ class RawlogReader {
     if (header.name == kFrameClass) {
       read_frame();
     } else if (header.name == kScanClass) {
-      Scan position;
+      Scan scan;
       // Observations stand alone here: with several lasers, each would make its own positions.
-      read_scan(position, true);
-      add(std::move(position));
+      read_scan(scan, true);
+      add(std::move(scan));
     } else {
       skeleton_.skip_object();
     }
@@ -67,13 +67,13 @@ class RawlogReader {
 
   void read_frame() {
     const std::uint32_t num_observations = skeleton_.enter_frame();
-    Scan position;
+    Scan scan;
     bool frame_open = true;
     for (std::uint32_t i = 0; i < num_observations; ++i) {
       const ObjectHeader header = skeleton_.peek_header();
       frame_open = header.name == kScanClass;
       if (frame_open) {
-        read_scan(position, false);
+        read_scan(scan, false);
       } else if (header.name.substr(0, 12) == "CObservation") {
         skeleton_.skip_object();
       } else {
@@ -81,10 +81,10 @@ class RawlogReader {
       }
     }
     if (frame_open) skeleton_.leave_frame();
-    add(std::move(position));
+    add(std::move(scan));
   }
 
-  void read_scan(Scan& position, bool only_first) {
+  void read_scan(Scan& scan, bool only_first) {
     const std::string_view object = skeleton_.peek_scan();
     RawlogScan read;
     try {
@@ -95,19 +95,19 @@ class RawlogReader {
     }
     const std::uint64_t offset = skeleton_.offset();
     skeleton_.skip(object.size());
-    if (!choice_.takes(read.scan.sensor_label, only_first)) return;
+    if (!choice_.takes(read.sweep.sensor_label, only_first)) return;
     const std::string fault = fault_of(read);
     if (!fault.empty()) {
       if (num_unusable_++ == 0) first_unusable_ = fault + " (the first at offset " + std::to_string(offset) + ")";
       return;
     }
-    if (position.sweeps.empty()) position.timestamp_s = timestamp_of(read);
-    position.sweeps.push_back(std::move(read.scan));
+    if (scan.sweeps.empty()) scan.timestamp_s = timestamp_of(read);
+    scan.sweeps.push_back(std::move(read.sweep));
   }
 
   static std::string fault_of(const RawlogScan& read) {
-    if (read.scan.ranges_m.empty()) return "no beams";
-    const std::string fault = implausibility(read.scan);
+    if (read.sweep.ranges_m.empty()) return "no beams";
+    const std::string fault = implausibility(read.sweep);
     return fault.empty() && read.timestamp_s ? implausible_time(*read.timestamp_s) : fault;
   }
 
@@ -117,11 +117,11 @@ class RawlogReader {
     return static_cast<double>(log_.scans.size());
   }
 
-  void add(Scan position) {
-    if (position.sweeps.empty()) return;
+  void add(Scan scan) {
+    if (scan.sweeps.empty()) return;
     const std::string fault = implausible_count(log_.scans.size(), "positions");
     if (!fault.empty()) throw RawlogDamage{skeleton_.offset(), fault};
-    log_.scans.push_back(std::move(position));
+    log_.scans.push_back(std::move(scan));
   }
 
   std::string unusable_text() const {
@@ -148,12 +148,12 @@ class RawlogReader {
 };
 
 /// MRPT counts time in 64 bits of 100 ns since the year 1601.
-void require_rawlog_time(const Scan& position, std::size_t index) {
+void require_rawlog_time(const Scan& scan, std::size_t index) {
   constexpr double kEarliest_s = -11644473600.0;
   constexpr double kLatest_s = 9.1e11;
-  if (position.timestamp_s > kEarliest_s && position.timestamp_s < kLatest_s) return;  // written so that NaN fails
+  if (scan.timestamp_s > kEarliest_s && scan.timestamp_s < kLatest_s) return;  // written so that NaN fails
   std::ostringstream why;
-  why << "position " << index << " has the timestamp " << position.timestamp_s << ", which a rawlog cannot hold";
+  why << "position " << index << " has the timestamp " << scan.timestamp_s << ", which a rawlog cannot hold";
   throw OutputError(why.str());
 }
 
@@ -166,14 +166,14 @@ void write_rawlog(const Log& log, const LogPoses* poses, ByteSink& sink) {
   for (std::size_t i = 0; i < log.scans.size(); ++i) require_rawlog_time(log.scans[i], i);
   Pose2 map_from_previous;
   for (std::size_t i = 0; i < log.scans.size(); ++i) {
-    const Scan& position = log.scans[i];
+    const Scan& scan = log.scans[i];
     std::optional<Pose2> previous_from_current;
     if (poses != nullptr) {
       previous_from_current = inverse(map_from_previous) * poses->map_from_robot[i];
       map_from_previous = poses->map_from_robot[i];
     }
-    sink.write(action_to_rawlog(previous_from_current, position.timestamp_s));
-    sink.write(frame_to_rawlog(position));
+    sink.write(action_to_rawlog(previous_from_current, scan.timestamp_s));
+    sink.write(frame_to_rawlog(scan));
   }
 }
 

@@ -12,7 +12,7 @@
 namespace shapemap {
 
 struct RawlogScan {
-  Sweep scan;
+  Sweep sweep;
   std::optional<double> timestamp_s;  ///< Unix time; nothing when the rawlog does not know it
 };
 
@@ -20,7 +20,7 @@ struct RawlogScan {
 RawlogScan scan_from_rawlog(std::string_view object);
 
 /// A serialised CSensoryFrame with the sub-scans of `position`.
-std::string frame_to_rawlog(const Scan& position);
+std::string frame_to_rawlog(const Scan& scan);
 
 /// A serialised CActionCollection with one odometry increment, or with none.
 std::string action_to_rawlog(const std::optional<Pose2>& previous_from_current, double timestamp_s);

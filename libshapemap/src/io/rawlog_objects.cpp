@@ -42,26 +42,26 @@ mrpt::Clock::time_point mrpt_time(double timestamp_s) { return mrpt::Clock::from
 
 /// MRPT's beams lie symmetrically around the sensor's x axis: the middle of ours is turned there.
 CObservation2DRangeScan::Ptr scan_to_mrpt(const Sweep& even_or_not, double timestamp_s) {
-  const Sweep scan = on_even_beams(even_or_not);
-  const std::size_t num_beams = scan.ranges_m.size();
-  const double span_rad = scan.angle_step_rad * (static_cast<double>(num_beams) - 1.0);
-  const double middle_rad = scan.first_angle_rad + span_rad / 2;
-  const MountPose mount = mount_with_heading(scan);
+  const Sweep sweep = on_even_beams(even_or_not);
+  const std::size_t num_beams = sweep.ranges_m.size();
+  const double span_rad = sweep.angle_step_rad * (static_cast<double>(num_beams) - 1.0);
+  const double middle_rad = sweep.first_angle_rad + span_rad / 2;
+  const MountPose mount = mount_with_heading(sweep);
 
   auto out = CObservation2DRangeScan::Create();
   out->aperture = static_cast<float>(std::abs(span_rad));
-  out->rightToLeft = scan.angle_step_rad >= 0.0;
-  if (scan.max_range_m > 0.0) out->maxRange = static_cast<float>(scan.max_range_m);
+  out->rightToLeft = sweep.angle_step_rad >= 0.0;
+  if (sweep.max_range_m > 0.0) out->maxRange = static_cast<float>(sweep.max_range_m);
   out->sensorPose =
       mrpt::poses::CPose3D(mount.x_m, mount.y_m, mount.z_m, mount.yaw_rad, mount.pitch_rad, mount.roll_rad) +
       mrpt::poses::CPose3D(0.0, 0.0, 0.0, middle_rad, 0.0, 0.0);
-  out->sensorLabel = scan.sensor_label;
+  out->sensorLabel = sweep.sensor_label;
   out->timestamp = mrpt_time(timestamp_s);
   out->resizeScan(num_beams);
-  const RangeLimits limits = range_limits(scan, ReturnOptions{});
+  const RangeLimits limits = range_limits(sweep, ReturnOptions{});
   for (std::size_t i = 0; i < num_beams; ++i) {
-    const bool valid = is_return(scan.ranges_m[i], limits);
-    out->setScanRange(i, valid ? scan.ranges_m[i] : out->maxRange);
+    const bool valid = is_return(sweep.ranges_m[i], limits);
+    out->setScanRange(i, valid ? sweep.ranges_m[i] : out->maxRange);
     out->setScanRangeValidity(i, valid);
   }
   return out;
@@ -79,26 +79,26 @@ RawlogScan scan_from_rawlog(std::string_view object) {
     throw std::runtime_error(error.what());
   }
   RawlogScan out;
-  Sweep& scan = out.scan;
+  Sweep& sweep = out.sweep;
   const std::size_t num_beams = in.getScanSize();
   const double direction = in.rightToLeft ? 1.0 : -1.0;
   const double aperture_rad = in.aperture;
-  scan.first_angle_rad = -direction * aperture_rad / 2;
-  if (num_beams > 1) scan.angle_step_rad = direction * aperture_rad / static_cast<double>(num_beams - 1);
-  scan.max_range_m = std::isfinite(in.maxRange) && in.maxRange > 0.0F ? static_cast<double>(in.maxRange) : 0.0;
-  scan.robot_from_sensor = mount_from_mrpt(in.sensorPose);
-  scan.sensor_label = in.sensorLabel;
-  scan.ranges_m.reserve(num_beams);
+  sweep.first_angle_rad = -direction * aperture_rad / 2;
+  if (num_beams > 1) sweep.angle_step_rad = direction * aperture_rad / static_cast<double>(num_beams - 1);
+  sweep.max_range_m = std::isfinite(in.maxRange) && in.maxRange > 0.0F ? static_cast<double>(in.maxRange) : 0.0;
+  sweep.robot_from_sensor = mount_from_mrpt(in.sensorPose);
+  sweep.sensor_label = in.sensorLabel;
+  sweep.ranges_m.reserve(num_beams);
   for (std::size_t i = 0; i < num_beams; ++i) {
-    scan.ranges_m.push_back(in.getScanRangeValidity(i) ? in.getScanRange(i) : std::numeric_limits<float>::quiet_NaN());
+    sweep.ranges_m.push_back(in.getScanRangeValidity(i) ? in.getScanRange(i) : std::numeric_limits<float>::quiet_NaN());
   }
   if (in.timestamp != INVALID_TIMESTAMP) out.timestamp_s = mrpt::Clock::toDouble(in.timestamp);
   return out;
 }
 
-std::string frame_to_rawlog(const Scan& position) {
+std::string frame_to_rawlog(const Scan& scan) {
   mrpt::obs::CSensoryFrame frame;
-  for (const Sweep& scan : position.sweeps) frame.insert(scan_to_mrpt(scan, position.timestamp_s));
+  for (const Sweep& sweep : scan.sweeps) frame.insert(scan_to_mrpt(sweep, scan.timestamp_s));
   return serialised(frame);
 }
 

@@ -30,21 +30,21 @@ class Cursor {
  public:
   explicit Cursor(ByteSource& source) : source_(source) {}
 
-  std::size_t position() const { return position_; }
+  std::size_t scan() const { return scan_; }
   void advance(std::size_t count) {
-    if (source_.ensure(position_ + count) < position_ + count) fail("the file ends inside of a scan");
-    position_ += count;
+    if (source_.ensure(scan_ + count) < scan_ + count) fail("the file ends inside of a scan");
+    scan_ += count;
   }
   template <class Integer>
   Integer take() {
     advance(sizeof(Integer));
     Integer value{};
-    std::memcpy(&value, source_.buffered().data() + position_ - sizeof(Integer), sizeof(Integer));
+    std::memcpy(&value, source_.buffered().data() + scan_ - sizeof(Integer), sizeof(Integer));
     return value;
   }
   ObjectHeader header() {
-    source_.ensure(position_ + kLongestHeader);
-    const std::optional<ObjectHeader> header = parse_object_header(source_.buffered().substr(position_));
+    source_.ensure(scan_ + kLongestHeader);
+    const std::optional<ObjectHeader> header = parse_object_header(source_.buffered().substr(scan_));
     if (!header) fail("no object where one should be");
     advance(header->length);
     return *header;
@@ -58,11 +58,11 @@ class Cursor {
   void end_mark() {
     if (take<unsigned char>() != kEndMark) fail("an object does not end where it should");
   }
-  [[noreturn]] void fail(const std::string& what) const { throw RawlogDamage{source_.offset() + position_, what}; }
+  [[noreturn]] void fail(const std::string& what) const { throw RawlogDamage{source_.offset() + scan_, what}; }
 
  private:
   ByteSource& source_;
-  std::size_t position_ = 0;
+  std::size_t scan_ = 0;
 };
 
 void pass_matrix(Cursor& cursor) {
@@ -158,20 +158,20 @@ std::uint32_t RawlogSkeleton::enter_frame() {
   if (header.version < 2) cursor.advance(sizeof(std::uint32_t));   // identifier
   if (header.version == 0) cursor.advance(sizeof(std::uint64_t));  // timestamp
   const auto num_observations = cursor.take<std::uint32_t>();
-  skip(cursor.position());
+  skip(cursor.scan());
   return num_observations;
 }
 
 void RawlogSkeleton::leave_frame() {
   Cursor cursor(source_);
   cursor.end_mark();
-  skip(cursor.position());
+  skip(cursor.scan());
 }
 
 std::string_view RawlogSkeleton::peek_scan() {
   Cursor cursor(source_);
   pass_scan(cursor);
-  return source_.buffered().substr(0, cursor.position());
+  return source_.buffered().substr(0, cursor.scan());
 }
 
 /// Objects do not tell their length. The end is an end mark in front of the name of the next entry; inside of other

@@ -6,9 +6,9 @@ namespace shapemap {
 std::vector<std::size_t> references_of(const MapResult& result) {
   std::vector<std::size_t> references;
   std::size_t keyframe = kNoReference;
-  for (const ScanResult& position : result.scans) {
-    references.push_back(position.reference == kNoReference ? keyframe : position.reference);
-    if (position.component >= 0 && position.is_keyframe) keyframe = position.scan_index;
+  for (const ScanResult& scan : result.scans) {
+    references.push_back(scan.reference == kNoReference ? keyframe : scan.reference);
+    if (scan.component >= 0 && scan.is_keyframe) keyframe = scan.scan_index;
   }
   return references;
 }

@@ -111,41 +111,41 @@ Json ranked_json(const std::vector<RankedPose>& ranked) {
   return list;
 }
 
-Json alignment_json(const ScanResult& position, std::size_t reference) {
-  if (!was_aligned(position)) return nullptr;
-  const ScanMatch& alignment = position.alignment;
-  const auto if_any = [&](const Pose2& pose) { return alignment.has_pose() ? pose_json(pose) : Json(nullptr); };
-  return {{"status", enum_name(alignment.status)},
+Json match_json(const ScanResult& scan, std::size_t reference) {
+  if (!was_aligned(scan)) return nullptr;
+  const ScanMatch& match = scan.match;
+  const auto if_any = [&](const Pose2& pose) { return match.has_pose() ? pose_json(pose) : Json(nullptr); };
+  return {{"status", enum_name(match.status)},
           {"reference", reference == kNoReference ? Json(nullptr) : Json(reference)},
-          {"ref_from_query", if_any(alignment.ref_from_query)},
-          {"shape_ref_from_query", if_any(alignment.shape_ref_from_query)},
-          {"icp_ref_from_query", if_any(alignment.icp_ref_from_query)},
-          {"probability", number_json(alignment.probability)},
-          {"covariance", covariance_json(alignment.covariance)},
-          {"ranked", ranked_json(alignment.ranked)},
-          {"rotation_deg", alignment.rotation_rad / kDegree},
-          {"num_correspondences", alignment.num_correspondences},
-          {"mean_distance_m", alignment.mean_distance_m},
-          {"overlap", alignment.overlap},
-          {"overlap_ratio", alignment.overlap_ratio},
-          {"icp_iterations", alignment.icp_iterations},
-          {"query_from_sub_scan", poses_json(alignment.query_from_sweep)}};
+          {"ref_from_query", if_any(match.ref_from_query)},
+          {"shape_ref_from_query", if_any(match.shape_ref_from_query)},
+          {"icp_ref_from_query", if_any(match.icp_ref_from_query)},
+          {"probability", number_json(match.probability)},
+          {"covariance", covariance_json(match.covariance)},
+          {"ranked", ranked_json(match.ranked)},
+          {"rotation_deg", match.rotation_rad / kDegree},
+          {"num_correspondences", match.num_correspondences},
+          {"mean_distance_m", match.mean_distance_m},
+          {"overlap", match.overlap},
+          {"overlap_ratio", match.overlap_ratio},
+          {"icp_iterations", match.icp_iterations},
+          {"query_from_sub_scan", poses_json(match.query_from_sweep)}};
 }
 
-Json position_json(const ScanResult& position, std::size_t reference, const RunReport& report) {
-  const std::size_t log = part_with(report.log, position.scan_index);
+Json scan_json(const ScanResult& scan, std::size_t reference, const RunReport& report) {
+  const std::size_t log = part_with(report.log, scan.scan_index);
   const std::size_t first = log == 0 ? 0 : report.log.starts[log - 1];
-  return {{"index", position.scan_index},
+  return {{"index", scan.scan_index},
           {"log", log},
-          {"index_in_whole_log", index_in_whole_log(position.scan_index - first, report.selection)},
-          {"timestamp_s", position.timestamp_s},
-          {"fragment", position.component},
-          {"starts_fragment", position.starts_component},
-          {"is_keyframe", position.component >= 0 && position.is_keyframe},
-          {"held_by_loops", position.loop_constrained},
-          {"reason", position.reason},
-          {"alignment", alignment_json(position, reference)},
-          {"why_not_in_map", report.result.why_not_in_map(position)},
+          {"index_in_whole_log", index_in_whole_log(scan.scan_index - first, report.selection)},
+          {"timestamp_s", scan.timestamp_s},
+          {"fragment", scan.component},
+          {"starts_fragment", scan.starts_component},
+          {"is_keyframe", scan.component >= 0 && scan.is_keyframe},
+          {"held_by_loops", scan.loop_constrained},
+          {"reason", scan.reason},
+          {"alignment", match_json(scan, reference)},
+          {"why_not_in_map", report.result.why_not_in_map(scan)},
           {"map_from_robot", nullptr},
           {"agreement", nullptr}};
 }
@@ -157,13 +157,13 @@ Json agreement_json(const ScanConsistency& consistency) {
           {"contradicts_map", consistency.contradicts_map}};
 }
 
-Json positions_json(const RunReport& report) {
+Json scans_json(const RunReport& report) {
   Json list = Json::array();
   const std::vector<std::size_t> references = references_of(report.result);
   std::vector<std::size_t> entry_of(report.log.scans.size(), 0);
-  for (const ScanResult& position : report.result.scans) {
-    entry_of.at(position.scan_index) = list.size();
-    list.push_back(position_json(position, references[list.size()], report));
+  for (const ScanResult& scan : report.result.scans) {
+    entry_of.at(scan.scan_index) = list.size();
+    list.push_back(scan_json(scan, references[list.size()], report));
   }
   for (const Component& component : report.result.components) {
     for (const PlacedScan& place : component.scans) {
@@ -201,7 +201,7 @@ Json walls_json(const RunReport& report, std::size_t component) {
   return {{"turned_deg", walls.turn_rad() / kDegree}, {"share", walls.share}, {"rival_share", walls.rival_share}};
 }
 
-Json fragments_json(const RunReport& report) {
+Json components_json(const RunReport& report) {
   const MapResult& result = report.result;
   Json list = Json::array();
   for (std::size_t i = 0; i < result.components.size(); ++i) {
@@ -266,9 +266,9 @@ std::string json_report(const RunReport& report) {
                     {"num_placed", report.result.placed().size()},
                     {"num_contradicting", num_contradicting(report.result.placed())},
                     {"interrupted", report.result.interrupted},
-                    {"fragments", fragments_json(report)},
+                    {"fragments", components_json(report)},
                     {"loops", loops_json(report.result)},
-                    {"positions", positions_json(report)},
+                    {"positions", scans_json(report)},
                     {"warnings", report.warnings},
                     {"seconds", timings_json(report)},
                     {"milestones", milestones_json(report.costs)},

@@ -55,8 +55,8 @@ std::optional<std::string_view> LineReader::next() {
   return line;
 }
 
-void LineReader::require_plausible(const Sweep& scan) {
-  refuse(implausibility(scan));
+void LineReader::require_plausible(const Sweep& sweep) {
+  refuse(implausibility(sweep));
   refuse(implausible_count(num_scans_++, "scans"));
 }
 

@@ -25,7 +25,7 @@ class LineReader {
   InputError error(const std::string& what) const;
   std::string where() const;
   /// Throws InputError when a scan that is finished in the latest line is impossible, or one too many.
-  void require_plausible(const Sweep& scan);
+  void require_plausible(const Sweep& sweep);
   /// Throws InputError unless `fault`, see scan/plausibility.hpp, is empty.
   void refuse(const std::string& fault) const;
   /// The number that `word` of the latest line is. Throws InputError naming `name` when it is none, or not finite.

@@ -28,14 +28,14 @@ TraceFile::TraceFile(const std::string& path, TracedRun run)
 TraceFile::~TraceFile() = default;
 
 void TraceFile::on_shape(std::size_t scan_index, const std::vector<ShapePoint>& points) {
-  write_line(position_json(run_, scan_index, points), *sink_);
+  write_line(scan_json(run_, scan_index, points), *sink_);
 }
 
-void TraceFile::on_alignment(const TracedAlignment& alignment) {
-  write_line(alignment_json(alignment, run_.mapping.align.lcs.target), *sink_);
+void TraceFile::on_alignment(const TracedAlignment& match) {
+  write_line(match_json(match, run_.mapping.align.lcs.target), *sink_);
 }
 
-void TraceFile::on_link(const TracedLink& link) { write_line(link_json(link), *sink_); }
+void TraceFile::on_link(const TracedLink& edge) { write_line(link_json(edge), *sink_); }
 
 void TraceFile::on_choice(const TracedChoice& choice) { write_line(choice_json(choice), *sink_); }
 
@@ -44,13 +44,13 @@ void TraceFile::on_revision(const TracedRevision& revision) { write_line(revisio
 void TraceFile::commit(const MapResult& result) {
   // Where each position stands in its fragment: both are in the order of the log.
   std::vector<std::size_t> next_of_fragment(result.components.size(), 0);
-  for (const ScanResult& position : result.scans) {
+  for (const ScanResult& scan : result.scans) {
     const PlacedScan* placed = nullptr;
-    if (position.component >= 0) {
-      const auto component = static_cast<std::size_t>(position.component);
+    if (scan.component >= 0) {
+      const auto component = static_cast<std::size_t>(scan.component);
       placed = &result.components.at(component).scans.at(next_of_fragment[component]++);
     }
-    write_line(result_json(position, placed), *sink_);
+    write_line(result_json(scan, placed), *sink_);
   }
   write_line(end_json(result), *sink_);
   sink_->commit();

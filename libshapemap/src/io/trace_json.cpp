@@ -87,13 +87,13 @@ Json targets_json(const std::vector<TracedTarget>& targets) {
   return all;
 }
 
-void add_best_rotation(const TracedAlignment& alignment, LcsTarget target, Json& all) {
-  const AlignTrace& steps = alignment.steps;
+void add_best_rotation(const TracedAlignment& match, LcsTarget target, Json& all) {
+  const AlignTrace& steps = match.steps;
   all["best_rotation"] = nullptr;
   for (const char* name : {"lcs", "spread", "segments", "kept"}) all[name] = Json::array();
   if (steps.best_rotation < 0) return;
   const RotationMatch& best = steps.rotations.at(static_cast<std::size_t>(steps.best_rotation));
-  const PairNames names(alignment.targets, target);
+  const PairNames names(match.targets, target);
   all["best_rotation"] = steps.best_rotation;
   all["lcs"] = names(best.lcs);
   all["spread"] = names(best.spread);
@@ -134,13 +134,13 @@ Json run_json(const TracedRun& run) {
           {"options", options}};
 }
 
-Json position_json(const TracedRun& run, std::size_t scan_index, const std::vector<ShapePoint>& points) {
-  const Scan& position = run.log.scans.at(scan_index);
+Json scan_json(const TracedRun& run, std::size_t scan_index, const std::vector<ShapePoint>& points) {
+  const Scan& scan = run.log.scans.at(scan_index);
   const std::size_t log = part_with(run.log, scan_index);
   const std::size_t first = log == 0 ? 0 : run.log.starts[log - 1];
   Json sweeps = Json::array();
-  for (std::size_t s = 0; s < position.sweeps.size(); ++s) {
-    sweeps.push_back(polylines_json(position.sweeps[s], static_cast<int>(s), run.mapping));
+  for (std::size_t s = 0; s < scan.sweeps.size(); ++s) {
+    sweeps.push_back(polylines_json(scan.sweeps[s], static_cast<int>(s), run.mapping));
   }
   Json shape = Json::array();
   for (const ShapePoint& p : points) {
@@ -150,7 +150,7 @@ Json position_json(const TracedRun& run, std::size_t scan_index, const std::vect
               {"index", scan_index},
               {"log", log},
               {"index_in_whole_log", index_in_whole_log(scan_index - first, run.selection)},
-              {"timestamp_s", number_json(position.timestamp_s)},
+              {"timestamp_s", number_json(scan.timestamp_s)},
               {"sub_scans", sweeps},
               {"points", shape}};
   if (run.mapping.run.method == Method::kPaper) {
@@ -159,17 +159,17 @@ Json position_json(const TracedRun& run, std::size_t scan_index, const std::vect
   return all;
 }
 
-Json alignment_json(const TracedAlignment& alignment, LcsTarget target) {
-  const ScanMatch& result = alignment.alignment;
+Json match_json(const TracedAlignment& match, LcsTarget target) {
+  const ScanMatch& result = match.match;
   Json rotations = Json::array();
-  for (const RotationMatch& match : alignment.steps.rotations) rotations.push_back(rotation_json(match));
-  Json all = {{"record", "alignment"},          {"reference", alignment.targets.back().scan_index},
-              {"query", alignment.query_index}, {"status", enum_name(result.status)},
-              {"reason", result.reason},        {"targets", targets_json(alignment.targets)},
+  for (const RotationMatch& rotation : match.steps.rotations) rotations.push_back(rotation_json(rotation));
+  Json all = {{"record", "alignment"},      {"reference", match.targets.back().scan_index},
+              {"query", match.query_index}, {"status", enum_name(result.status)},
+              {"reason", result.reason},    {"targets", targets_json(match.targets)},
               {"rotations", rotations}};
-  add_best_rotation(alignment, target, all);
+  add_best_rotation(match, target, all);
   all["shape_ref_from_query"] = pose_array(result.shape_ref_from_query);
-  all["icp_steps"] = pose_arrays(alignment.steps.icp.steps);
+  all["icp_steps"] = pose_arrays(match.steps.icp.steps);
   all["icp_ref_from_query"] = pose_array(result.icp_ref_from_query);
   all["query_from_sub_scan"] = pose_arrays(result.query_from_sweep);
   all["overlap"] = result.overlap;
@@ -177,13 +177,13 @@ Json alignment_json(const TracedAlignment& alignment, LcsTarget target) {
   return all;
 }
 
-Json link_json(const TracedLink& link) {
+Json link_json(const TracedLink& edge) {
   return {{"record", "link"},
-          {"reference", link.reference_index},
-          {"query", link.query_index},
-          {"num_own", link.num_own},
-          {"view_shortfall", link.insufficient_view},
-          {"hypotheses", hypotheses_json(link.candidates)}};
+          {"reference", edge.reference_index},
+          {"query", edge.query_index},
+          {"num_own", edge.num_own},
+          {"view_shortfall", edge.insufficient_view},
+          {"hypotheses", hypotheses_json(edge.candidates)}};
 }
 
 Json choice_json(const TracedChoice& choice) {
@@ -210,18 +210,18 @@ Json revision_json(const TracedRevision& revision) {
           {"probability", revision.probability}};
 }
 
-Json result_json(const ScanResult& position, const PlacedScan* placed) {
-  const ScanMatch& alignment = position.alignment;
+Json result_json(const ScanResult& scan, const PlacedScan* placed) {
+  const ScanMatch& match = scan.match;
   return {{"record", "result"},
-          {"index", position.scan_index},
-          {"timestamp_s", number_json(position.timestamp_s)},
-          {"fragment", position.component},
-          {"starts_fragment", position.starts_component},
-          {"status", was_aligned(position) ? Json(enum_name(alignment.status)) : Json(nullptr)},
-          {"reason", position.reason},
-          {"ref_from_query", alignment.has_pose() ? pose_array(alignment.ref_from_query) : Json(nullptr)},
-          {"probability", number_json(alignment.probability)},
-          {"covariance", covariance_json(alignment.covariance)},
+          {"index", scan.scan_index},
+          {"timestamp_s", number_json(scan.timestamp_s)},
+          {"fragment", scan.component},
+          {"starts_fragment", scan.starts_component},
+          {"status", was_aligned(scan) ? Json(enum_name(match.status)) : Json(nullptr)},
+          {"reason", scan.reason},
+          {"ref_from_query", match.has_pose() ? pose_array(match.ref_from_query) : Json(nullptr)},
+          {"probability", number_json(match.probability)},
+          {"covariance", covariance_json(match.covariance)},
           {"fragment_from_robot", placed ? pose_array(placed->map_from_robot) : Json(nullptr)},
           {"robot_from_sub_scan", placed ? pose_arrays(placed->robot_from_sweep) : Json::array()}};
 }

@@ -10,15 +10,15 @@ namespace shapemap {
 Json run_json(const TracedRun& run);
 
 /// `points` are those that the method looks at. Polylines and histograms are made once more, the same way.
-Json position_json(const TracedRun& run, std::size_t scan_index, const std::vector<ShapePoint>& points);
+Json scan_json(const TracedRun& run, std::size_t scan_index, const std::vector<ShapePoint>& points);
 
-Json alignment_json(const TracedAlignment& alignment, LcsTarget target);
-Json link_json(const TracedLink& link);
+Json match_json(const TracedAlignment& match, LcsTarget target);
+Json link_json(const TracedLink& edge);
 Json choice_json(const TracedChoice& choice);
 Json revision_json(const TracedRevision& revision);
 
 /// `placed` is null for a position that is in no fragment.
-Json result_json(const ScanResult& position, const PlacedScan* placed);
+Json result_json(const ScanResult& scan, const PlacedScan* placed);
 
 Json end_json(const MapResult& result);
 

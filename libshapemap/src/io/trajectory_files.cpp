@@ -50,22 +50,22 @@ bool is_covariance(const Eigen::Matrix3d& matrix) {
 
 /// Of a motion to `position` from the one before it. That is what `position` is aligned to, or else its `sibling`: both
 /// are aligned to the same keyframe, and then both alignments err.
-Eigen::Matrix3d covariance_of(const Pose2& motion, const ScanResult& position, const ScanResult* sibling) {
-  const ScanMatch& alignment = position.alignment;
-  if (!alignment.covariance.allFinite()) {
-    if (alignment.has_pose()) {
+Eigen::Matrix3d covariance_of(const Pose2& motion, const ScanResult& scan, const ScanResult* sibling) {
+  const ScanMatch& match = scan.match;
+  if (!match.covariance.allFinite()) {
+    if (match.has_pose()) {
       throw ConfigError("motions need covariances, which only the robust method gives; use --method robust");
     }
     return kUnheld.asDiagonal();
   }
-  if (!sibling || sibling->alignment.ranked.empty()) return alignment.covariance;
-  const Eigen::Rotation2Dd turn(-sibling->alignment.ranked.front().ref_from_query.theta_rad);
-  Eigen::Matrix3d by_position = Eigen::Matrix3d::Identity();
-  by_position.topLeftCorner<2, 2>() = turn.toRotationMatrix();
-  Eigen::Matrix3d by_sibling = -by_position;
+  if (!sibling || sibling->match.ranked.empty()) return match.covariance;
+  const Eigen::Rotation2Dd turn(-sibling->match.ranked.front().ref_from_query.theta_rad);
+  Eigen::Matrix3d by_scan = Eigen::Matrix3d::Identity();
+  by_scan.topLeftCorner<2, 2>() = turn.toRotationMatrix();
+  Eigen::Matrix3d by_sibling = -by_scan;
   by_sibling.topRightCorner<2, 1>() = Eigen::Vector2d(motion.y_m, -motion.x_m);
-  const Eigen::Matrix3d sum = by_position * alignment.covariance * by_position.transpose() +
-                              by_sibling * sibling->alignment.covariance * by_sibling.transpose();
+  const Eigen::Matrix3d sum = by_scan * match.covariance * by_scan.transpose() +
+                              by_sibling * sibling->match.covariance * by_sibling.transpose();
   return 0.5 * (sum + sum.transpose());
 }
 

@@ -27,15 +27,15 @@ constexpr std::size_t kMostTried = 16;
 
 }  // namespace
 
-Localizer::Localizer(const KeyframeGraph& chain, const RobustOptions& options, std::size_t active_component,
+Localizer::Localizer(const KeyframeGraph& graph, const RobustOptions& options, std::size_t active_component,
                      std::size_t first, LocalizationState state, const std::vector<LoopCandidate>& loops,
                      OptimizedMap& map)
-    : chain_(chain),
+    : graph_(graph),
       options_(options),
       loops_(loops),
       map_(map),
-      verification_(chain, options, active_component),
-      stand_ins_(chain.keyframes.size()),
+      verification_(graph, options, active_component),
+      redundant_(graph.keyframes.size()),
       state_(state),
       log_odds_(state.log_odds),
       open_(first),
@@ -47,7 +47,7 @@ std::size_t Localizer::go(std::size_t last) {
   for (std::size_t b = open_; b < last && !state_.is_lost; ++b) {
     const bool doubts = is_in_doubt(b);
     if (doubts && b + kLookAhead > last) break;
-    if (!link_exists(b) || (doubts && !decide(b))) {
+    if (!edge_exists(b) || (doubts && !decide(b))) {
       make_certain(good_);  // it is not known where the robot went on, but it is where it was
       get_lost();
     } else if (!step(b)) {
@@ -59,17 +59,17 @@ std::size_t Localizer::go(std::size_t last) {
 }
 
 void Localizer::expect(std::size_t b) {
-  if (link_exists(b)) {
-    map_.map_from_keyframe[b] = map_.map_from_keyframe[b - 1] * link_in_map(chain_, map_, b);
+  if (edge_exists(b)) {
+    map_.map_from_keyframe[b] = map_.map_from_keyframe[b - 1] * edge_in_map(graph_, map_, b);
   } else {
-    map_.map_from_keyframe[b] = {kPiecesApart_m * static_cast<double>(b), 0.0, 0.0};
+    map_.map_from_keyframe[b] = {kComponentsApart_m * static_cast<double>(b), 0.0, 0.0};
   }
 }
 
-bool Localizer::link_exists(std::size_t b) const { return map_.edge_choice[b - 1] != kCut; }
+bool Localizer::edge_exists(std::size_t b) const { return map_.edge_choice[b - 1] != kCut; }
 
 bool Localizer::is_in_doubt(std::size_t b) const {
-  return link_exists(b) && stated_probability(chain_.edges[b - 1]) < kSureLink;
+  return edge_exists(b) && stated_probability(graph_.edges[b - 1]) < kSureEdge;
 }
 
 /// False when the robot cannot be where it is expected.
@@ -118,12 +118,12 @@ void Localizer::know(std::size_t b, ReplacementKeyframe replacement) {
   hold_back_from(b);
   last_known_ = b;
   verification_.let_go(b);
-  stand_ins_[b] = std::move(replacement);
+  redundant_[b] = std::move(replacement);
 }
 
 /// What is between a keyframe that is known again and the last one that was is held from both ends.
 void Localizer::hold_back_from(std::size_t b) {
-  for (std::size_t i = b; i > last_known_ && link_exists(i); --i) {
+  for (std::size_t i = b; i > last_known_ && edge_exists(i); --i) {
     if (map_.component[i - 1] != verification_.active_component()) break;
     map_.loop_constrained[i - 1] = true;
   }
@@ -134,12 +134,12 @@ bool Localizer::decide(std::size_t b) {
   const int chosen = map_.edge_choice[b - 1];
   const Pose2 before = map_.map_from_keyframe[b - 1];
   std::size_t end = b + 1;
-  while (end < b + kLookAhead && link_exists(end)) ++end;
+  while (end < b + kLookAhead && edge_exists(end)) ++end;
   PlaceHypotheses places;
   int best = chosen;
-  for (int k = 0; k < static_cast<int>(chain_.edges[b - 1].candidates.size()); ++k) {
+  for (int k = 0; k < static_cast<int>(graph_.edges[b - 1].candidates.size()); ++k) {
     map_.edge_choice[b - 1] = k;
-    if (places.add(verification_.lay(map_, b, end, b, before * link_in_map(chain_, map_, b)))) best = k;
+    if (places.add(verification_.lay(map_, b, end, b, before * edge_in_map(graph_, map_, b)))) best = k;
   }
   map_.edge_choice[b - 1] = places.is_sure() ? best : chosen;
   return places.is_sure();
@@ -159,7 +159,7 @@ void Localizer::find_way(std::size_t last) {
     expect(b);
     map_.component[b] = lost;
   }
-  for (std::size_t first = lost; first < last && !chain_.edges[first - 1].candidates.empty();) {
+  for (std::size_t first = lost; first < last && !graph_.edges[first - 1].candidates.empty();) {
     const std::size_t end = end_of_stretch(first, last);
     const std::size_t end_of_placed = place(first, end);
     if (end_of_placed > first) {
@@ -172,7 +172,7 @@ void Localizer::find_way(std::size_t last) {
 
 std::size_t Localizer::end_of_stretch(std::size_t first, std::size_t last) const {
   std::size_t end = first + 1;
-  while (end < last && link_exists(end) && !is_in_doubt(end)) ++end;
+  while (end < last && edge_exists(end) && !is_in_doubt(end)) ++end;
   return end;
 }
 
@@ -196,14 +196,14 @@ std::size_t Localizer::place(std::size_t first, std::size_t last) {
 std::vector<std::pair<std::size_t, Pose2>> Localizer::candidates(std::size_t first, std::size_t last) const {
   std::vector<std::pair<std::size_t, Pose2>> found;
   if (map_.component[first - 1] == verification_.active_component()) {
-    for (const MatchCandidate& pose : chain_.edges[first - 1].candidates) {
+    for (const MatchCandidate& pose : graph_.edges[first - 1].candidates) {
       found.emplace_back(first, map_.map_from_keyframe[first - 1] * pose.ref_from_query);
     }
   }
   std::vector<const LoopCandidate*> here;
   for (const LoopCandidate& loop : loops_) {
     const bool is_here = first <= loop.b && loop.b < last && loop.a < first;
-    if (is_here && map_.component[loop.a] == verification_.active_component() && !stand_ins_[loop.a])
+    if (is_here && map_.component[loop.a] == verification_.active_component() && !redundant_[loop.a])
       here.push_back(&loop);
   }
   std::stable_sort(here.begin(), here.end(), [](const LoopCandidate* one, const LoopCandidate* other) {
@@ -222,7 +222,7 @@ void Localizer::settle_in(std::size_t first, PlacedStretch stretch) {
     map_.map_from_keyframe[b] = stretch.map_from_keyframe[b - first];
     map_.component[b] = verification_.active_component();
   }
-  take_link_as_in_map(begin);
+  take_edge_as_in_map(begin);
   last_known_ = begin;
   for (std::size_t b = begin; b < first + stretch.sure_end; ++b) {
     if (stretch.redundant[b - first]) know(b, std::move(*stretch.redundant[b - first]));
@@ -230,13 +230,13 @@ void Localizer::settle_in(std::size_t first, PlacedStretch stretch) {
 }
 
 /// Of a link between two keyframes that are both in their places.
-void Localizer::take_link_as_in_map(std::size_t b) {
+void Localizer::take_edge_as_in_map(std::size_t b) {
   if (map_.component[b - 1] != verification_.active_component()) {
     map_.edge_choice[b - 1] = kCut;
     return;
   }
   const Pose2 in_map = inverse(map_.map_from_keyframe[b - 1]) * map_.map_from_keyframe[b];
-  const std::vector<MatchCandidate>& candidates = chain_.edges[b - 1].candidates;
+  const std::vector<MatchCandidate>& candidates = graph_.edges[b - 1].candidates;
   map_.edge_choice[b - 1] = kCut;
   for (std::size_t k = 0; k < candidates.size() && map_.edge_choice[b - 1] == kCut; ++k) {
     if (!is_within(inverse(candidates[k].ref_from_query) * in_map, kAsInMap_m, kAsInMap_rad)) continue;

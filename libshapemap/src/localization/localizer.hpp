@@ -30,7 +30,7 @@ class Localizer {
   /// `map` has links and a place for all keyframes; those before `first` are in theirs. `home` is the component that
   /// the robot was sure to be in; `bearings` are those at keyframe `first - 1`. `loops` are places where keyframes may
   /// have been before.
-  Localizer(const KeyframeGraph& chain, const RobustOptions& options, std::size_t active_component, std::size_t first,
+  Localizer(const KeyframeGraph& graph, const RobustOptions& options, std::size_t active_component, std::size_t first,
             LocalizationState state, const std::vector<LoopCandidate>& loops, OptimizedMap& map);
 
   /// Along keyframes up to `last`; returns where to go on next time, with the bearings() there: what is not certain yet
@@ -42,10 +42,10 @@ class Localizer {
 
   const LocalizationState& state() const { return state_; }
   /// Per keyframe: what it was known by.
-  std::vector<std::optional<ReplacementKeyframe>>& redundant() { return stand_ins_; }
+  std::vector<std::optional<ReplacementKeyframe>>& redundant() { return redundant_; }
 
  private:
-  bool link_exists(std::size_t b) const;
+  bool edge_exists(std::size_t b) const;
   bool is_in_doubt(std::size_t b) const;
 
   bool step(std::size_t b);
@@ -61,14 +61,14 @@ class Localizer {
   std::size_t place(std::size_t first, std::size_t last);
   std::vector<std::pair<std::size_t, Pose2>> candidates(std::size_t first, std::size_t last) const;
   void settle_in(std::size_t first, PlacedStretch stretch);
-  void take_link_as_in_map(std::size_t b);
+  void take_edge_as_in_map(std::size_t b);
 
-  const KeyframeGraph& chain_;
+  const KeyframeGraph& graph_;
   const RobustOptions& options_;
   const std::vector<LoopCandidate>& loops_;
   OptimizedMap& map_;
   PlaceVerification verification_;
-  std::vector<std::optional<ReplacementKeyframe>> stand_ins_;
+  std::vector<std::optional<ReplacementKeyframe>> redundant_;
 
   LocalizationState state_;  ///< at keyframe open_ - 1
   double log_odds_;          ///< that the robot is where it is expected now

@@ -16,8 +16,8 @@ constexpr double kUnknownTells = -2.0;
 
 }  // namespace
 
-const Pose2& link_in_map(const KeyframeGraph& chain, const OptimizedMap& map, std::size_t b) {
-  return chain.edges[b - 1].candidates[static_cast<std::size_t>(map.edge_choice[b - 1])].ref_from_query;
+const Pose2& edge_in_map(const KeyframeGraph& graph, const OptimizedMap& map, std::size_t b) {
+  return graph.edges[b - 1].candidates[static_cast<std::size_t>(map.edge_choice[b - 1])].ref_from_query;
 }
 
 Pose2 pose_by(const OptimizedMap& map, const ReplacementKeyframe& replacement) {
@@ -26,7 +26,7 @@ Pose2 pose_by(const OptimizedMap& map, const ReplacementKeyframe& replacement) {
 
 PlaceEvidence PlaceVerification::look(const OptimizedMap& map, std::size_t b, std::size_t end) const {
   const std::vector<std::size_t> there = at_place(map, b, end);
-  std::vector<ReplacementKeyframe> found = replacements_for(chain_, map.map_from_keyframe, b, there, 1, options_);
+  std::vector<ReplacementKeyframe> found = replacements_for(graph_, map.map_from_keyframe, b, there, 1, options_);
   // Those just before it show the same, or do not, wherever the two are.
   const auto tells = [&](std::size_t a) { return a + kKeyframesInUse < b; };
   if (!found.empty()) return {std::move(found.front()), tells(found.front().keyframe) ? kKnownTells : 0.0};
@@ -37,7 +37,7 @@ PlacedStretch PlaceVerification::lay(OptimizedMap& map, std::size_t first, std::
                                      const Pose2& map_from_seed) const {
   PlacedStretch laid;
   laid.redundant.resize(last - first);
-  laid.map_from_keyframe.assign(last - first, {kPiecesApart_m, kPiecesApart_m, 0.0});
+  laid.map_from_keyframe.assign(last - first, {kComponentsApart_m, kComponentsApart_m, 0.0});
   laid.sure_begin = laid.sure_end = seed - first;
   double log_odds = kSureOfPlace;  // of one way from the seed
   const auto lay_one = [&](std::size_t b, const Pose2& expected) {
@@ -54,13 +54,13 @@ PlacedStretch PlaceVerification::lay(OptimizedMap& map, std::size_t first, std::
   for (std::size_t b = seed + 1; log_odds >= 0.0; ++b) {
     if (log_odds == kSureOfPlace) laid.sure_end = b - first;
     if (b == last) break;
-    lay_one(b, map.map_from_keyframe[b - 1] * link_in_map(chain_, map, b));
+    lay_one(b, map.map_from_keyframe[b - 1] * edge_in_map(graph_, map, b));
   }
   log_odds = at_seed;
   for (std::size_t b = seed; log_odds >= 0.0; --b) {
     if (log_odds == kSureOfPlace) laid.sure_begin = b - first;
     if (b == first) break;
-    lay_one(b - 1, map.map_from_keyframe[b] * inverse(link_in_map(chain_, map, b)));
+    lay_one(b - 1, map.map_from_keyframe[b] * inverse(edge_in_map(graph_, map, b)));
   }
   return laid;
 }

@@ -35,11 +35,11 @@ struct PlacedStretch {
 /// Holds keyframes against the keyframes of a map, of which only the component `home` counts.
 class PlaceVerification {
  public:
-  PlaceVerification(const KeyframeGraph& chain, const RobustOptions& options, std::size_t active_component)
-      : chain_(chain),
+  PlaceVerification(const KeyframeGraph& graph, const RobustOptions& options, std::size_t active_component)
+      : graph_(graph),
         options_(options),
         active_component_(active_component),
-        is_gone_(chain.keyframes.size(), false) {}
+        is_gone_(graph.keyframes.size(), false) {}
 
   /// Keyframe `b`, where `map` has it, against those before `end`.
   PlaceEvidence look(const OptimizedMap& map, std::size_t b, std::size_t end) const;
@@ -58,14 +58,14 @@ class PlaceVerification {
  private:
   std::vector<std::size_t> at_place(const OptimizedMap& map, std::size_t b, std::size_t end) const;
 
-  const KeyframeGraph& chain_;
+  const KeyframeGraph& graph_;
   const RobustOptions& options_;
   std::size_t active_component_;
   std::vector<bool> is_gone_;
 };
 
 /// What link `b - 1` to `b` says where `map` takes one of its hypotheses.
-const Pose2& link_in_map(const KeyframeGraph& chain, const OptimizedMap& map, std::size_t b);
+const Pose2& edge_in_map(const KeyframeGraph& graph, const OptimizedMap& map, std::size_t b);
 
 /// Where a keyframe is by the one that stands for it.
 Pose2 pose_by(const OptimizedMap& map, const ReplacementKeyframe& replacement);

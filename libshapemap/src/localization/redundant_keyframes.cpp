@@ -42,7 +42,7 @@ std::vector<bool> near(const std::vector<bool>& is_unknown) {
 
 }  // namespace
 
-std::vector<ReplacementKeyframe> replacements_for(const KeyframeGraph& chain,
+std::vector<ReplacementKeyframe> replacements_for(const KeyframeGraph& graph,
                                                   const std::vector<Pose2>& map_from_keyframe, std::size_t b,
                                                   const std::vector<std::size_t>& earlier, std::size_t most,
                                                   const RobustOptions& options) {
@@ -51,35 +51,35 @@ std::vector<ReplacementKeyframe> replacements_for(const KeyframeGraph& chain,
     if (fitting.size() == most) break;
     const Pose2 expected = inverse(map_from_keyframe[a]) * map_from_keyframe[b];
     const MatchCandidate pose =
-        refined_candidate(*chain.keyframes[a].view, *chain.keyframes[b].view, expected, options.matcher.search);
+        refined_candidate(*graph.keyframes[a].view, *graph.keyframes[b].view, expected, options.matcher.search);
     const bool is_as_in_map = is_within(inverse(expected) * pose.ref_from_query, kAsInMap_m, kAsInMap_rad);
     if (is_as_in_map && shows_the_same(pose)) fitting.push_back({a, pose});
   }
   return fitting;
 }
 
-std::vector<bool> settled_keyframes(const KeyframeGraph& chain, const OptimizedMap& map) {
-  const std::size_t count = chain.keyframes.size();
-  std::vector<bool> sure(chain.edges.size());
+std::vector<bool> settled_keyframes(const KeyframeGraph& graph, const OptimizedMap& map) {
+  const std::size_t count = graph.keyframes.size();
+  std::vector<bool> sure(graph.edges.size());
   for (std::size_t i = 0; i < sure.size(); ++i) {
     sure[i] =
-        map.edge_choice[i] != kCut && (map.loop_constrained[i] || stated_probability(chain.edges[i]) >= kSureLink);
+        map.edge_choice[i] != kCut && (map.loop_constrained[i] || stated_probability(graph.edges[i]) >= kSureEdge);
   }
   std::vector<bool> settled(count, false);
   for (std::size_t i = 1; i + kKeyframesInUse < count; ++i) {
-    settled[i] = sure[i - 1] && sure[i] && chain.keyframes[i].sweep_views.empty();
+    settled[i] = sure[i - 1] && sure[i] && graph.keyframes[i].sweep_views.empty();
   }
   return settled;
 }
 
-RedundantKeyframes find_redundant_keyframes(const KeyframeGraph& chain, const OptimizedMap& map,
+RedundantKeyframes find_redundant_keyframes(const KeyframeGraph& graph, const OptimizedMap& map,
                                             const RobustOptions& options, int threads) {
-  const std::vector<bool> settled = settled_keyframes(chain, map);
+  const std::vector<bool> settled = settled_keyframes(graph, map);
   const std::vector<std::vector<std::size_t>> earlier = earlier_at_place(map, options.keyframes);
   std::vector<std::vector<ReplacementKeyframe>> fitting(settled.size());
   parallel_for(settled.size(), threads, [&](std::size_t b) {
     if (settled[b])
-      fitting[b] = replacements_for(chain, map.map_from_keyframe, b, earlier[b], kReplacementsTried, options);
+      fitting[b] = replacements_for(graph, map.map_from_keyframe, b, earlier[b], kReplacementsTried, options);
   });
   RedundantKeyframes result;
   result.of_keyframe.resize(settled.size());

@@ -17,7 +17,7 @@ namespace shapemap {
 inline constexpr std::size_t kKeyframesInUse = 16;
 
 /// A link this probable is as good as one that loops hold.
-inline constexpr double kSureLink = 0.99;
+inline constexpr double kSureEdge = 0.99;
 
 /// Two scans of one place must put each other where the map has them.
 inline constexpr double kAsInMap_m = 0.25;
@@ -33,14 +33,14 @@ struct ReplacementKeyframe {
 };
 
 /// Those of `earlier`, in their order, that can stand for keyframe `b` where the map has the two; at most `most`.
-std::vector<ReplacementKeyframe> replacements_for(const KeyframeGraph& chain,
+std::vector<ReplacementKeyframe> replacements_for(const KeyframeGraph& graph,
                                                   const std::vector<Pose2>& map_from_keyframe, std::size_t b,
                                                   const std::vector<std::size_t>& earlier, std::size_t most,
                                                   const RobustOptions& options);
 
 /// Per keyframe: whether it may go when another can stand for it. Those at doubtful links stay, those with several
 /// sub-scans, and the last few.
-std::vector<bool> settled_keyframes(const KeyframeGraph& chain, const OptimizedMap& map);
+std::vector<bool> settled_keyframes(const KeyframeGraph& graph, const OptimizedMap& map);
 
 /// What a map says of each of its keyframes at the place of others.
 struct RedundantKeyframes {
@@ -52,7 +52,7 @@ struct RedundantKeyframes {
   /// Of a map that is right, nearly all do; where rows of like rooms are laid on each other, a fourth does not.
   bool are_of_right_map() const { return static_cast<double>(num_known) >= 0.95 * static_cast<double>(num_again); }
 };
-RedundantKeyframes find_redundant_keyframes(const KeyframeGraph& chain, const OptimizedMap& map,
+RedundantKeyframes find_redundant_keyframes(const KeyframeGraph& graph, const OptimizedMap& map,
                                             const RobustOptions& options, int threads);
 
 }  // namespace shapemap

@@ -10,18 +10,18 @@ namespace shapemap {
 namespace {
 
 /// What the chain says of links that the map does not know.
-void add_links(const KeyframeGraph& chain, OptimizedMap& map) {
-  for (std::size_t i = map.edge_choice.size(); i < chain.edges.size(); ++i) {
-    const OdometryEdge& link = chain.edges[i];
-    map.edge_choice.push_back(link.candidates.empty() ? kCut : static_cast<int>(link.choice.candidate));
+void add_links(const KeyframeGraph& graph, OptimizedMap& map) {
+  for (std::size_t i = map.edge_choice.size(); i < graph.edges.size(); ++i) {
+    const OdometryEdge& edge = graph.edges[i];
+    map.edge_choice.push_back(edge.candidates.empty() ? kCut : static_cast<int>(edge.choice.candidate));
     map.loop_constrained.push_back(false);
   }
 }
 
-void add_link_constraints(const KeyframeGraph& chain, std::size_t first, OptimizedMap& map) {
-  for (std::size_t i = first; i < chain.edges.size(); ++i) {
+void add_link_constraints(const KeyframeGraph& graph, std::size_t first, OptimizedMap& map) {
+  for (std::size_t i = first; i < graph.edges.size(); ++i) {
     if (map.edge_choice[i] == kCut) continue;
-    map.constraints.push_back(edge_constraint(chain, i, static_cast<std::size_t>(map.edge_choice[i])));
+    map.constraints.push_back(edge_constraint(graph, i, static_cast<std::size_t>(map.edge_choice[i])));
   }
 }
 
@@ -36,37 +36,37 @@ std::size_t last_certain(const OptimizedMap& map, std::size_t end) {
 
 }  // namespace
 
-void RevisitTracker::start(const KeyframeGraph& chain, const OptimizedMap& map, std::size_t num_settled) {
+void RevisitTracker::start(const KeyframeGraph& graph, const OptimizedMap& map, std::size_t num_settled) {
   const std::size_t last = last_certain(map, num_settled);
   state_ = {};
   state_.is_lost = last + 1 < num_settled;
-  home_position_ = chain.keyframes[map.component[last]].scan_index;
-  renew(map, chain.keyframes.size() - num_settled);
+  active_scan_ = graph.keyframes[map.component[last]].scan_index;
+  renew(map, graph.keyframes.size() - num_settled);
 }
 
-RevisitTracker::Followed RevisitTracker::follow(const KeyframeGraph& chain, const std::vector<LoopCandidate>& loops) {
+RevisitTracker::Followed RevisitTracker::follow(const KeyframeGraph& graph, const std::vector<LoopCandidate>& loops) {
   const std::size_t first = settled_.map_from_keyframe.size();
-  const std::size_t count = chain.keyframes.size();
+  const std::size_t count = graph.keyframes.size();
   const std::size_t last = count - std::min(count, kKeyframesInUse);
   Followed result;
   result.map = settled_;
-  add_links(chain, result.map);
+  add_links(graph, result.map);
   result.map.map_from_keyframe.resize(count);
   for (std::size_t i = first; i < count; ++i) result.map.component.push_back(i);
   const auto active_component =
-      std::lower_bound(chain.keyframes.begin(), chain.keyframes.end(), home_position_,
-                       [](const Keyframe& k, std::size_t position) { return k.scan_index < position; });
+      std::lower_bound(graph.keyframes.begin(), graph.keyframes.end(), active_scan_,
+                       [](const Keyframe& k, std::size_t scan) { return k.scan_index < scan; });
   const std::size_t home_component =
-      result.map.component[static_cast<std::size_t>(active_component - chain.keyframes.begin())];
-  Localizer follower(chain, options_, home_component, first, state_, loops, result.map);
+      result.map.component[static_cast<std::size_t>(active_component - graph.keyframes.begin())];
+  Localizer follower(graph, options_, home_component, first, state_, loops, result.map);
   result.num_followed = follower.go(std::max(first, last));
   for (std::size_t b = result.num_followed; b < count; ++b) follower.expect(b);
-  add_link_constraints(chain, first - 1, result.map);
+  add_link_constraints(graph, first - 1, result.map);
   state_ = follower.state();
   result.redundant = std::move(follower.redundant());
   // A link that may still change must not become what the map says: it would when the keyframe before it went.
   if (state_.is_lost) result.redundant[result.num_followed - 1].reset();
-  const std::vector<bool> may_go = settled_keyframes(chain, result.map);
+  const std::vector<bool> may_go = settled_keyframes(graph, result.map);
   for (std::size_t b = first; b < count; ++b) {
     if (!may_go[b]) result.redundant[b].reset();
   }

@@ -21,7 +21,7 @@ class RevisitTracker {
   explicit RevisitTracker(const RobustOptions& options) : options_(options) {}
 
   /// `map` is solved for all keyframes of the chain; those after the first `num_settled` may still change.
-  void start(const KeyframeGraph& chain, const OptimizedMap& map, std::size_t num_settled);
+  void start(const KeyframeGraph& graph, const OptimizedMap& map, std::size_t num_settled);
 
   /// All of the chain, with what `redundant` knows again in its place. Those keyframes are still to be retired, and the
   /// map that is left then to be given to renew().
@@ -30,7 +30,7 @@ class RevisitTracker {
     std::vector<std::optional<ReplacementKeyframe>> redundant;  ///< per keyframe: of those that may go
     std::size_t num_followed = 0;  ///< the keyframes after the first so many may still change
   };
-  Followed follow(const KeyframeGraph& chain, const std::vector<LoopCandidate>& loops);
+  Followed follow(const KeyframeGraph& graph, const std::vector<LoopCandidate>& loops);
 
   /// Whether loops help: the robot does not know where it is in the map.
   bool is_lost() const { return state_.is_lost; }
@@ -41,7 +41,7 @@ class RevisitTracker {
  private:
   const RobustOptions& options_;
   OptimizedMap settled_;
-  std::size_t home_position_ = 0;  ///< of the first keyframe of the part of the map that the robot was sure to be in
+  std::size_t active_scan_ = 0;  ///< of the first keyframe of the part of the map that the robot was sure to be in
   LocalizationState state_;
 };
 

@@ -11,16 +11,16 @@
 namespace shapemap {
 namespace {
 
-EdgeChoices choices_of_edge(const KeyframeGraph& chain, std::size_t i) {
-  const OdometryEdge& link = chain.edges[i];
+EdgeChoices choices_of_edge(const KeyframeGraph& graph, std::size_t i) {
+  const OdometryEdge& edge = graph.edges[i];
   EdgeChoices result;
-  for (std::size_t rank = 0; rank < link.candidates.size(); ++rank) {
-    const std::size_t k = ranked_candidate(link, rank);
-    const PoseConstraint constraint = edge_constraint(chain, i, k);
-    result.candidates.push_back({constraint.a_from_b, constraint.covariance, link.candidates[k].score});
+  for (std::size_t rank = 0; rank < edge.candidates.size(); ++rank) {
+    const std::size_t k = ranked_candidate(edge, rank);
+    const PoseConstraint constraint = edge_constraint(graph, i, k);
+    result.candidates.push_back({constraint.a_from_b, constraint.covariance, edge.candidates[k].score});
   }
-  if (result.exists()) result.probability = edge_probability(link);
-  for (const MatchCandidate& pose : link.candidates) {
+  if (result.exists()) result.probability = edge_probability(edge);
+  for (const MatchCandidate& pose : edge.candidates) {
     result.any_probability = std::max(result.any_probability, match_probability(pose, kFullMargin));
   }
   return result;
@@ -28,30 +28,30 @@ EdgeChoices choices_of_edge(const KeyframeGraph& chain, std::size_t i) {
 
 }  // namespace
 
-NodeViews views_of(const KeyframeGraph& chain) {
+NodeViews views_of(const KeyframeGraph& graph) {
   NodeViews views;
-  for (const Keyframe& keyframe : chain.keyframes) views.push_back(keyframe.view);
+  for (const Keyframe& keyframe : graph.keyframes) views.push_back(keyframe.view);
   return views;
 }
 
-std::size_t ranked_candidate(const OdometryEdge& link, std::size_t rank) {
-  if (rank == 0) return link.choice.candidate;
-  return rank <= link.choice.candidate ? rank - 1 : rank;
+std::size_t ranked_candidate(const OdometryEdge& edge, std::size_t rank) {
+  if (rank == 0) return edge.choice.candidate;
+  return rank <= edge.choice.candidate ? rank - 1 : rank;
 }
 
-std::vector<EdgeChoices> edge_choices(const KeyframeGraph& chain) {
+std::vector<EdgeChoices> edge_choices(const KeyframeGraph& graph) {
   std::vector<EdgeChoices> edges;
-  for (std::size_t i = 0; i < chain.edges.size(); ++i) edges.push_back(choices_of_edge(chain, i));
+  for (std::size_t i = 0; i < graph.edges.size(); ++i) edges.push_back(choices_of_edge(graph, i));
   return edges;
 }
 
-void find_loops(const KeyframeGraph& chain, std::size_t end, const LoopSearch& by_position, LoopCandidates& known) {
+void find_loops(const KeyframeGraph& graph, std::size_t end, const LoopSearch& by_scan, LoopCandidates& known) {
   std::optional<KeyframeMatchCache> keyframe_store;
-  if (by_position.store) keyframe_store.emplace(chain, *by_position.store);
-  LoopSearch search = by_position;
+  if (by_scan.store) keyframe_store.emplace(graph, *by_scan.store);
+  LoopSearch search = by_scan;
   search.store = keyframe_store ? &*keyframe_store : nullptr;
   RunObserver& observer = search.execution.observer;
-  const NodeViews views = views_of(chain);
+  const NodeViews views = views_of(graph);
   const auto add = [&](const std::vector<LoopCandidate>& found) {
     known.candidates.insert(known.candidates.end(), found.begin(), found.end());
   };
@@ -62,14 +62,14 @@ void find_loops(const KeyframeGraph& chain, std::size_t end, const LoopSearch& b
   known.num_searched = end;
 
   observer.on_stage("doubts");
-  const std::size_t end_of_links = std::min(end, chain.edges.size());
+  const std::size_t end_of_edges = std::min(end, graph.edges.size());
   std::vector<std::size_t> doubtful;
-  for (std::size_t i = known.num_bridged; i < end_of_links; ++i) {
-    const OdometryEdge& link = chain.edges[i];
-    if (link.candidates.empty()) continue;
-    if (edge_probability(link) < search.detection.bridge_below) doubtful.push_back(i);
+  for (std::size_t i = known.num_bridged; i < end_of_edges; ++i) {
+    const OdometryEdge& edge = graph.edges[i];
+    if (edge.candidates.empty()) continue;
+    if (edge_probability(edge) < search.detection.bridge_below) doubtful.push_back(i);
   }
-  known.num_bridged = end_of_links;
+  known.num_bridged = end_of_edges;
   try {
     add(cross_edge_matches(views, doubtful, search));
   } catch (const Interrupted&) {  // what was read is made one map without

@@ -18,14 +18,14 @@ struct LoopCandidates {
   std::size_t num_bridged = 0;   ///< and of the first so many links the doubtful ones have been bridged
 };
 
-NodeViews views_of(const KeyframeGraph& chain);
-std::vector<EdgeChoices> edge_choices(const KeyframeGraph& chain);
+NodeViews views_of(const KeyframeGraph& graph);
+std::vector<EdgeChoices> edge_choices(const KeyframeGraph& graph);
 
 /// Index of hypothesis number `rank` of a link, when that which the chain chose comes first, as in EdgeChoices.
-std::size_t ranked_candidate(const OdometryEdge& link, std::size_t rank);
+std::size_t ranked_candidate(const OdometryEdge& edge, std::size_t rank);
 
 /// Adds what there is to know of the first `end` keyframes; nothing is done twice. The store of `search` is by
 /// positions. Stops with what was found by then when the observer asks to.
-void find_loops(const KeyframeGraph& chain, std::size_t end, const LoopSearch& search, LoopCandidates& known);
+void find_loops(const KeyframeGraph& graph, std::size_t end, const LoopSearch& search, LoopCandidates& known);
 
 }  // namespace shapemap

@@ -19,31 +19,31 @@ std::size_t apart(std::size_t i, std::size_t j) { return i < j ? j - i : i - j; 
 class Clustering {
  public:
   Clustering(const std::vector<LoopCandidate>& candidates, const std::vector<Pose2>& map_from_node,
-             const std::vector<std::size_t>& piece_of_node, const ClusterOptions& options)
-      : hypotheses_(candidates),
+             const std::vector<std::size_t>& submap_of_node, const ClusterOptions& options)
+      : candidates_(candidates),
         map_from_node_(map_from_node),
-        piece_of_node_(piece_of_node),
+        submap_of_node_(submap_of_node),
         options_(options),
         order_(candidates.size()),
         cluster_(candidates.size()) {
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     std::iota(cluster_.begin(), cluster_.end(), std::size_t{0});
     std::stable_sort(order_.begin(), order_.end(),
-                     [&](std::size_t i, std::size_t j) { return hypotheses_[i].b < hypotheses_[j].b; });
+                     [&](std::size_t i, std::size_t j) { return candidates_[i].b < candidates_[j].b; });
   }
 
   std::vector<LoopCluster> clusters() {
     const auto window = static_cast<std::size_t>(options_.window);
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      const LoopCandidate& one = hypotheses_[order_[i]];
+      const LoopCandidate& one = candidates_[order_[i]];
       for (std::size_t j = i + 1; j < order_.size(); ++j) {
-        const LoopCandidate& other = hypotheses_[order_[j]];
+        const LoopCandidate& other = candidates_[order_[j]];
         if (other.b - one.b > window) break;
         if (apart(one.a, other.a) <= window && say_the_same(one, other)) join(order_[i], order_[j]);
       }
     }
     std::map<std::size_t, LoopCluster> by_root;
-    for (std::size_t i = 0; i < hypotheses_.size(); ++i) by_root[root(i)].members.push_back(hypotheses_[i]);
+    for (std::size_t i = 0; i < candidates_.size(); ++i) by_root[root(i)].members.push_back(candidates_[i]);
     std::vector<LoopCluster> result;
     for (auto& [unused, cluster] : by_root) {
       rate(cluster);
@@ -57,7 +57,7 @@ class Clustering {
 
  private:
   bool say_the_same(const LoopCandidate& one, const LoopCandidate& other) const {
-    if (piece_of_node_[one.a] != piece_of_node_[other.a] || piece_of_node_[one.b] != piece_of_node_[other.b]) {
+    if (submap_of_node_[one.a] != submap_of_node_[other.a] || submap_of_node_[one.b] != submap_of_node_[other.b]) {
       return false;
     }
     const Pose2 other_a_from_a = inverse(map_from_node_[other.a]) * map_from_node_[one.a];
@@ -93,9 +93,9 @@ class Clustering {
     cluster.strength = std::min(by_a, by_b);
   }
 
-  const std::vector<LoopCandidate>& hypotheses_;
+  const std::vector<LoopCandidate>& candidates_;
   const std::vector<Pose2>& map_from_node_;
-  const std::vector<std::size_t>& piece_of_node_;
+  const std::vector<std::size_t>& submap_of_node_;
   const ClusterOptions& options_;
   std::vector<std::size_t> order_;
   std::vector<std::size_t> cluster_;
@@ -107,8 +107,8 @@ double worth_of_member(const LoopCandidate& member) { return std::clamp(member.l
 
 std::vector<LoopCluster> loop_clusters(const std::vector<LoopCandidate>& candidates,
                                        const std::vector<Pose2>& map_from_node,
-                                       const std::vector<std::size_t>& piece_of_node, const ClusterOptions& options) {
-  return Clustering(candidates, map_from_node, piece_of_node, options).clusters();
+                                       const std::vector<std::size_t>& submap_of_node, const ClusterOptions& options) {
+  return Clustering(candidates, map_from_node, submap_of_node, options).clusters();
 }
 
 }  // namespace shapemap

@@ -128,9 +128,9 @@ std::vector<LoopCandidate> likely_loops(const NodeViews& views, std::size_t firs
 std::vector<LoopCandidate> cross_edge_matches(const NodeViews& views, const std::vector<std::size_t>& edges,
                                               const LoopSearch& search) {
   std::vector<Pair> pairs;
-  for (const std::size_t link : edges) {
-    for (std::size_t a = link + 1 - std::min(kBridgeNodes, link + 1); a <= link; ++a) {
-      for (std::size_t b = link + 1; b < std::min(views.size(), link + 1 + kBridgeNodes); ++b) pairs.push_back({a, b});
+  for (const std::size_t edge : edges) {
+    for (std::size_t a = edge + 1 - std::min(kBridgeNodes, edge + 1); a <= edge; ++a) {
+      for (std::size_t b = edge + 1; b < std::min(views.size(), edge + 1 + kBridgeNodes); ++b) pairs.push_back({a, b});
     }
   }
   const PairSearch thoroughly{without_all_rotations(search.matching),

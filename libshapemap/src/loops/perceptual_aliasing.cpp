@@ -27,17 +27,17 @@ constexpr double kLeastLogOdds = -2.0;
 class SureChain {
  public:
   SureChain(const std::vector<EdgeChoices>& edges, const std::vector<Pose2>& map_of_odometry)
-      : map_from_node_(map_of_odometry), piece_(map_of_odometry.size(), 0), variance_m2_(map_of_odometry.size(), 0.0) {
+      : map_from_node_(map_of_odometry), submap_(map_of_odometry.size(), 0), variance_m2_(map_of_odometry.size(), 0.0) {
     for (std::size_t i = 0; i < edges.size(); ++i) {
       const bool is_sure = edges[i].exists() && edges[i].probability >= kSure;
-      piece_[i + 1] = piece_[i] + (is_sure ? 0 : 1);
+      submap_[i + 1] = submap_[i] + (is_sure ? 0 : 1);
       variance_m2_[i + 1] = variance_m2_[i];
       if (is_sure) variance_m2_[i + 1] += variance_m2(edges[i].candidates.front().covariance);
     }
   }
 
   bool contradicts(const LoopCandidate& one) const {
-    if (piece_[one.a] != piece_[one.b] || one.b - one.a > kLongest) return false;
+    if (submap_[one.a] != submap_[one.b] || one.b - one.a > kLongest) return false;
     const Pose2 off = inverse(one.a_from_b) * (inverse(map_from_node_[one.a]) * map_from_node_[one.b]);
     const double deviation_m = std::sqrt(variance_m2_[one.b] - variance_m2_[one.a] + variance_m2(one.covariance));
     return !is_within(off, kLeastOff_m + kDeviations * deviation_m, kLeastOff_rad);
@@ -47,7 +47,7 @@ class SureChain {
   static double variance_m2(const Eigen::Matrix3d& covariance) { return covariance(0, 0) + covariance(1, 1); }
 
   const std::vector<Pose2>& map_from_node_;
-  std::vector<std::size_t> piece_;
+  std::vector<std::size_t> submap_;
   std::vector<double> variance_m2_;  ///< from the first node on
 };
 

@@ -5,18 +5,18 @@
 
 namespace shapemap {
 
-void judge_edge(const KeyframeGraph& chain, const OptimizedMap& map, std::size_t link, const ConfidenceOptions& options,
+void judge_edge(const KeyframeGraph& graph, const OptimizedMap& map, std::size_t edge, const ConfidenceOptions& options,
                 TraceSink* sink, ScanResult& outcome) {
-  outcome.loop_constrained = map.loop_constrained[link];
-  const std::size_t before = chain.keyframes[link].scan_index;
-  if (chain.keyframes[link].session != outcome.session) return;  // there is nothing to align to
+  outcome.loop_constrained = map.loop_constrained[edge];
+  const std::size_t before = graph.keyframes[edge].scan_index;
+  if (graph.keyframes[edge].session != outcome.session) return;  // there is nothing to align to
   outcome.reference = before;
-  const OdometryEdge& of = chain.edges[link];
+  const OdometryEdge& of = graph.edges[edge];
   const std::vector<MatchCandidate>& candidates = of.candidates;
   const Choice& choice = of.choice;
-  const bool is_cut = map.edge_choice[link] == kCut;
+  const bool is_cut = map.edge_choice[edge] == kCut;
   const std::size_t best = of.verified ? of.verified->candidate : choice.candidate;
-  const std::size_t taken = is_cut ? best : static_cast<std::size_t>(map.edge_choice[link]);
+  const std::size_t taken = is_cut ? best : static_cast<std::size_t>(map.edge_choice[edge]);
   const bool is_first_choice = taken == choice.candidate;
   double margin = choice.margin;
   if (!is_first_choice) margin = candidates[taken].score - candidates[choice.candidate].score;
@@ -24,8 +24,8 @@ void judge_edge(const KeyframeGraph& chain, const OptimizedMap& map, std::size_t
   if (!candidates.empty()) {
     probability = of.verified ? of.verified->probability : probability_by_two_scans(of, taken, margin);
   }
-  outcome.alignment = judged(candidates, taken, margin, options, probability);
-  outcome.reason = outcome.alignment.reason;
+  outcome.match = judged(candidates, taken, margin, options, probability);
+  outcome.reason = outcome.match.reason;
   if (is_cut && !candidates.empty() && outcome.reason.empty()) {
     outcome.reason = outcome.loop_constrained ? "the rest of the map speaks against it"
                                               : "less probable than it takes not to split the map";

@@ -12,7 +12,7 @@ namespace shapemap {
 
 /// Fills in what the alignment of a keyframe to the one before it, by link number `link`, says now that the map has.
 /// `sink` may be null.
-void judge_edge(const KeyframeGraph& chain, const OptimizedMap& map, std::size_t link, const ConfidenceOptions& options,
+void judge_edge(const KeyframeGraph& graph, const OptimizedMap& map, std::size_t edge, const ConfidenceOptions& options,
                 TraceSink* sink, ScanResult& outcome);
 
 }  // namespace shapemap

@@ -29,29 +29,29 @@ class FrontEnd {
   bool extend(std::size_t most_keyframes);
 
   /// Keyframes may be taken out of it between two calls of extend(), but for the last few.
-  KeyframeGraph& chain() { return chain_; }
+  KeyframeGraph& graph() { return graph_; }
 
  private:
   double timed_for(std::size_t count, const std::function<void(std::size_t)>& work) const;
-  void view_positions(std::size_t first, std::size_t last);
+  void view_scans(std::size_t first, std::size_t last);
   Keyframe viewed(std::size_t scan_index) const;
   void take(Keyframe scan);
   void link_keyframes(std::size_t first_new);
-  void expect(const ExpectedPose& expected, std::size_t link);
+  void expect(const ExpectedPose& expected, std::size_t edge);
   void expect_the_usual();
-  void expect_the_usual(const MotionPrior& prior, std::size_t link);
+  void expect_the_usual(const MotionPrior& prior, std::size_t edge);
   std::vector<MatchCandidate> aligned(std::size_t reference, std::size_t query, SearchKind search,
                                       const MatchSearchOptions& options) const;
-  std::vector<MatchCandidate> multi_reference_candidates(std::size_t link) const;
-  bool in_doubt(const std::vector<MatchCandidate>& link) const;
-  std::vector<std::vector<double>> three_scan_scores(std::size_t link) const;
+  std::vector<MatchCandidate> multi_reference_candidates(std::size_t edge) const;
+  bool in_doubt(const std::vector<MatchCandidate>& edge) const;
+  std::vector<std::vector<double>> three_scan_scores(std::size_t edge) const;
   void let_views_go();
 
-  bool starts_session(std::size_t link) const;
-  std::vector<MatchCandidate>& candidates(std::size_t link) { return chain_.edges[link].candidates; }
-  const std::vector<MatchCandidate>& candidates(std::size_t link) const { return chain_.edges[link].candidates; }
-  const ScanView& view_of_keyframe(std::size_t i) const { return *chain_.keyframes[i].view; }
-  std::size_t position_of(std::size_t keyframe) const { return chain_.keyframes[keyframe].scan_index; }
+  bool starts_session(std::size_t edge) const;
+  std::vector<MatchCandidate>& candidates(std::size_t edge) { return graph_.edges[edge].candidates; }
+  const std::vector<MatchCandidate>& candidates(std::size_t edge) const { return graph_.edges[edge].candidates; }
+  const ScanView& view_of_keyframe(std::size_t i) const { return *graph_.keyframes[i].view; }
+  std::size_t scan_of_keyframe(std::size_t keyframe) const { return graph_.keyframes[keyframe].scan_index; }
 
   const Log& log_;
   const MappingOptions& options_;
@@ -62,7 +62,7 @@ class FrontEnd {
   ScanTracker tracker_;
   std::size_t next_ = 0;       ///< the first position that was not looked at
   std::size_t last_seen_ = 0;  ///< the last position with shape
-  KeyframeGraph chain_;
+  KeyframeGraph graph_;
 };
 
 }  // namespace shapemap

@@ -23,8 +23,8 @@ Pose2 between(const OptimizedMap& map, std::size_t a, std::size_t b) {
 class KeyframeCulling {
  public:
   KeyframeCulling(const std::vector<std::optional<ReplacementKeyframe>>& redundant, const MappingOptions& options,
-                  OptimizedMap& map, KeyframeGraph& chain, LoopCandidates& known)
-      : stand_ins_(redundant), options_(options), map_(map), chain_(chain), known_(known), number_(redundant.size()) {
+                  OptimizedMap& map, KeyframeGraph& graph, LoopCandidates& known)
+      : redundant_(redundant), options_(options), map_(map), graph_(graph), known_(known), number_(redundant.size()) {
     for (std::size_t i = 0; i < redundant.size(); ++i) {
       number_[i] = kept_.size();
       if (!redundant[i]) kept_.push_back(i);
@@ -39,9 +39,9 @@ class KeyframeCulling {
   }
 
  private:
-  bool is_kept(std::size_t keyframe) const { return !stand_ins_[keyframe]; }
+  bool is_kept(std::size_t keyframe) const { return !redundant_[keyframe]; }
   std::size_t kept_for(std::size_t keyframe) const {
-    return is_kept(keyframe) ? keyframe : stand_ins_[keyframe]->keyframe;
+    return is_kept(keyframe) ? keyframe : redundant_[keyframe]->keyframe;
   }
 
   /// Hypotheses of keyframes that are kept stay; what the map knows of others is said of those that stand for them.
@@ -75,45 +75,45 @@ class KeyframeCulling {
   }
 
   void attach_scans() {
-    for (AttachedScan& scan : chain_.attached) {
-      const auto& replacement = stand_ins_[scan.keyframe];
+    for (AttachedScan& scan : graph_.attached) {
+      const auto& replacement = redundant_[scan.keyframe];
       if (replacement) scan.pose.ref_from_query = replacement->pose.ref_from_query * scan.pose.ref_from_query;
       scan.keyframe = number_[kept_for(scan.keyframe)];
     }
-    for (std::size_t i = 0; i < stand_ins_.size(); ++i) {
+    for (std::size_t i = 0; i < redundant_.size(); ++i) {
       if (is_kept(i)) continue;
-      const ReplacementKeyframe& replacement = *stand_ins_[i];
-      chain_.attached.push_back({chain_.keyframes[i].scan_index, number_[replacement.keyframe], replacement.pose});
+      const ReplacementKeyframe& replacement = *redundant_[i];
+      graph_.attached.push_back({graph_.keyframes[i].scan_index, number_[replacement.keyframe], replacement.pose});
     }
   }
 
   void renew_chain() {
     const RelativeCovariance covariance(map_.map_from_keyframe, map_.constraints);
     KeyframeGraph renewed;
-    renewed.attached = std::move(chain_.attached);
+    renewed.attached = std::move(graph_.attached);
     for (std::size_t k = 0; k < kept_.size(); ++k) {
-      renewed.keyframes.push_back(std::move(chain_.keyframes[kept_[k]]));
+      renewed.keyframes.push_back(std::move(graph_.keyframes[kept_[k]]));
       if (k == 0) continue;
       const std::size_t before = kept_[k - 1];
       const bool are_neighbours = before + 1 == kept_[k];
-      renewed.edges.push_back(are_neighbours ? std::move(chain_.edges[before])
+      renewed.edges.push_back(are_neighbours ? std::move(graph_.edges[before])
                                              : settled_link(before, kept_[k], covariance));
     }
     for (std::size_t i = 0; i + 1 < renewed.edges.size(); ++i) {
-      OdometryEdge& link = renewed.edges[i];
-      if (kept_[i + 2] != kept_[i] + 2) link.transition_scores = no_transition_scores(link, renewed.edges[i + 1]);
+      OdometryEdge& edge = renewed.edges[i];
+      if (kept_[i + 2] != kept_[i] + 2) edge.transition_scores = no_transition_scores(edge, renewed.edges[i + 1]);
     }
-    chain_ = std::move(renewed);
-    choose_candidates(chain_);
+    graph_ = std::move(renewed);
+    choose_candidates(graph_);
   }
 
   OdometryEdge settled_link(std::size_t a, std::size_t b, const RelativeCovariance& covariance) const {
-    OdometryEdge link;
+    OdometryEdge edge;
     MatchCandidate pose;
     pose.ref_from_query = between(map_, a, b);
-    link.candidates = {pose};
-    link.culled_covariance = covariance.between(a, b);
-    return link;
+    edge.candidates = {pose};
+    edge.culled_covariance = covariance.between(a, b);
+    return edge;
   }
 
   void renew_map() {
@@ -127,7 +127,7 @@ class KeyframeCulling {
       const bool are_neighbours = before + 1 == kept_[k];
       renewed.edge_choice.push_back(are_neighbours ? map_.edge_choice[before] : 0);
       renewed.loop_constrained.push_back(!are_neighbours || map_.loop_constrained[before]);
-      if (!are_neighbours) renewed.constraints.push_back(edge_constraint(chain_, k - 1, 0));
+      if (!are_neighbours) renewed.constraints.push_back(edge_constraint(graph_, k - 1, 0));
     }
     renewed.loops = std::move(map_.loops);
     map_ = std::move(renewed);
@@ -154,10 +154,10 @@ class KeyframeCulling {
     return constraints;
   }
 
-  const std::vector<std::optional<ReplacementKeyframe>>& stand_ins_;
+  const std::vector<std::optional<ReplacementKeyframe>>& redundant_;
   const MappingOptions& options_;
   OptimizedMap& map_;
-  KeyframeGraph& chain_;
+  KeyframeGraph& graph_;
   LoopCandidates& known_;
   std::vector<std::size_t> kept_;    ///< the keyframes that stay
   std::vector<std::size_t> number_;  ///< per keyframe: how many before it stay
@@ -166,8 +166,8 @@ class KeyframeCulling {
 }  // namespace
 
 void cull_keyframes(const std::vector<std::optional<ReplacementKeyframe>>& redundant, const MappingOptions& options,
-                    OptimizedMap& map, KeyframeGraph& chain, LoopCandidates& known) {
-  KeyframeCulling(redundant, options, map, chain, known).run();
+                    OptimizedMap& map, KeyframeGraph& graph, LoopCandidates& known) {
+  KeyframeCulling(redundant, options, map, graph, known).run();
 }
 
 }  // namespace shapemap

@@ -27,10 +27,10 @@ const std::vector<PlacedScan>& MapResult::placed() const {
   return largest_component < 0 ? none : components[static_cast<std::size_t>(largest_component)].scans;
 }
 
-std::string MapResult::why_not_in_map(const ScanResult& position) const {
-  if (position.component < 0) return position.reason;
-  if (position.component == largest_component) return "";
-  return position.reason + (position.reason.empty() ? "" : "; ") + "in fragment " + std::to_string(position.component) +
+std::string MapResult::why_not_in_map(const ScanResult& scan) const {
+  if (scan.component < 0) return scan.reason;
+  if (scan.component == largest_component) return "";
+  return scan.reason + (scan.reason.empty() ? "" : "; ") + "in fragment " + std::to_string(scan.component) +
          ", which nothing ties to the map";
 }
 

@@ -21,23 +21,23 @@ namespace shapemap {
 namespace {
 
 /// Of a pose in the frame of the map.
-Eigen::Matrix3d covariance_in_map(const ScanMatch& alignment, const Pose2& map_from_robot) {
+Eigen::Matrix3d covariance_in_map(const ScanMatch& match, const Pose2& map_from_robot) {
   Eigen::Matrix3d map_from_reference = Eigen::Matrix3d::Identity();
-  const double heading_rad = map_from_robot.theta_rad - alignment.ref_from_query.theta_rad;
+  const double heading_rad = map_from_robot.theta_rad - match.ref_from_query.theta_rad;
   map_from_reference.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(heading_rad).toRotationMatrix();
-  return map_from_reference * alignment.covariance * map_from_reference.transpose();
+  return map_from_reference * match.covariance * map_from_reference.transpose();
 }
 
 /// Gives each position of the log its place in `result`.
 class Placing {
  public:
-  Placing(const Log& log, const KeyframeGraph& chain, const OptimizedMap& map, const SweepCorrections& sweeps,
+  Placing(const Log& log, const KeyframeGraph& graph, const OptimizedMap& map, const SweepCorrections& sweeps,
           const MappingOptions& options, TraceSink* sink, MapResult& result)
-      : log_(log), chain_(chain), map_(map), sub_scans_(sweeps), options_(options), sink_(sink), result_(result) {}
+      : log_(log), graph_(graph), map_(map), sweeps_(sweeps), options_(options), sink_(sink), result_(result) {}
 
   void run() {
-    for (std::size_t i = 0; i < chain_.keyframes.size(); ++i) place_keyframe(i);
-    for (const AttachedScan& scan : chain_.attached) place_attached(scan);
+    for (std::size_t i = 0; i < graph_.keyframes.size(); ++i) place_keyframe(i);
+    for (const AttachedScan& scan : graph_.attached) place_attached(scan);
     for (Component& component : result_.components) {
       std::sort(component.scans.begin(), component.scans.end(),
                 [](const PlacedScan& a, const PlacedScan& b) { return a.scan_index < b.scan_index; });
@@ -49,29 +49,29 @@ class Placing {
 
  private:
   void place_keyframe(std::size_t i) {
-    ScanResult& outcome = result_.scans[chain_.keyframes[i].scan_index];
-    if (i > 0 && !chain_.edges[i - 1].culled_covariance) {
-      judge_edge(chain_, map_, i - 1, options_.robust.matcher.confidence, sink_, outcome);
+    ScanResult& outcome = result_.scans[graph_.keyframes[i].scan_index];
+    if (i > 0 && !graph_.edges[i - 1].culled_covariance) {
+      judge_edge(graph_, map_, i - 1, options_.robust.matcher.confidence, sink_, outcome);
     }
-    outcome.component = fragment_of(i);
+    outcome.component = component_of(i);
     outcome.starts_component = i == 0 || map_.component[i] != map_.component[i - 1];
     PlacedScan& placed = add(outcome, map_.map_from_keyframe[i]);
-    if (!sub_scans_.empty()) placed.robot_from_sweep = sub_scans_[i];
+    if (!sweeps_.empty()) placed.robot_from_sweep = sweeps_[i];
   }
 
   void place_attached(const AttachedScan& scan) {
     ScanResult& outcome = result_.scans[scan.scan_index];
-    outcome.alignment = judged({scan.pose}, 0, kFullMargin, options_.robust.matcher.confidence);
-    outcome.reference = chain_.keyframes[scan.keyframe].scan_index;
+    outcome.match = judged({scan.pose}, 0, kFullMargin, options_.robust.matcher.confidence);
+    outcome.reference = graph_.keyframes[scan.keyframe].scan_index;
     outcome.is_keyframe = false;
-    outcome.component = fragment_of(scan.keyframe);
+    outcome.component = component_of(scan.keyframe);
     add(outcome, map_.map_from_keyframe[scan.keyframe] * scan.pose.ref_from_query);
   }
 
   /// Fragments are numbered in the order of the log.
-  int fragment_of(std::size_t keyframe) {
+  int component_of(std::size_t keyframe) {
     const auto [found, is_new] =
-        fragment_of_component_.try_emplace(map_.component[keyframe], static_cast<int>(result_.components.size()));
+        number_of_component_.try_emplace(map_.component[keyframe], static_cast<int>(result_.components.size()));
     if (is_new) result_.components.emplace_back();
     return found->second;
   }
@@ -82,7 +82,7 @@ class Placing {
     for (const PlacedScan& placed : component.scans) {
       const ScanResult& outcome = result_.scans[placed.scan_index];
       TrackedPose pose{placed.scan_index, outcome.session, placed.map_from_robot, {}};
-      if (!outcome.is_keyframe) pose.covariance = covariance_in_map(outcome.alignment, placed.map_from_robot);
+      if (!outcome.is_keyframe) pose.covariance = covariance_in_map(outcome.match, placed.map_from_robot);
       poses.push_back(pose);
     }
     smooth_trajectory(poses);
@@ -101,13 +101,13 @@ class Placing {
   }
 
   const Log& log_;
-  const KeyframeGraph& chain_;
+  const KeyframeGraph& graph_;
   const OptimizedMap& map_;
-  const SweepCorrections& sub_scans_;
+  const SweepCorrections& sweeps_;
   const MappingOptions& options_;
   TraceSink* sink_;
   MapResult& result_;
-  std::map<std::size_t, int> fragment_of_component_;
+  std::map<std::size_t, int> number_of_component_;
 };
 
 /// After an interrupt nothing more is read, or looked for; what was read is still made one map.
@@ -147,20 +147,20 @@ class Reading {
     std::size_t next = options_.robust.loops.close_loops ? most : settle_at;
     while (growth_.extend(next)) {
       const auto start = std::chrono::steady_clock::now();
-      if (chain().keyframes.size() < most) {
+      if (graph().keyframes.size() < most) {
         if (has_settled_) follow();
       } else if (settle()) {
         has_settled_ = true;
-        most = std::max(settle_at, 2 * chain().keyframes.size());
+        most = std::max(settle_at, 2 * graph().keyframes.size());
       } else {
-        most = chain().keyframes.size() + settle_at / 2;
+        most = graph().keyframes.size() + settle_at / 2;
       }
-      next = std::min(most, chain().keyframes.size() + kFollowedAtOnce);
+      next = std::min(most, graph().keyframes.size() + kFollowedAtOnce);
       result_.times.loops_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
   }
 
-  KeyframeGraph& chain() { return growth_.chain(); }
+  KeyframeGraph& graph() { return growth_.graph(); }
   LoopCandidates& known() { return known_; }
 
  private:
@@ -172,43 +172,43 @@ class Reading {
   /// False where the map is not right yet: what it has at one place does not look the same. The more there is of the
   /// log, the more loops tell.
   bool settle() {
-    find_loops(chain(), chain().keyframes.size() - kKeyframesInUse, loop_search(), known_);
+    find_loops(graph(), graph().keyframes.size() - kKeyframesInUse, loop_search(), known_);
     if (!observer_.keep_going()) return false;
-    OptimizedMap map = optimized_map(chain(), known_.candidates, Improbable::kIsCut, options_.robust, execution());
+    OptimizedMap map = optimized_map(graph(), known_.candidates, Improbable::kIsCut, options_.robust, execution());
     if (!observer_.keep_going()) return false;
-    const RedundantKeyframes redundant = find_redundant_keyframes(chain(), map, options_.robust, options_.run.threads);
+    const RedundantKeyframes redundant = find_redundant_keyframes(graph(), map, options_.robust, options_.run.threads);
     if (!redundant.are_of_right_map()) return false;
     for (std::size_t b = 0; b < map.component.size(); ++b) {
       if (redundant.is_in_doubt[b]) map.component[b] = b;  // the robot is not to be followed there
     }
     retire(redundant.of_keyframe, map);
-    revisit_tracker_.start(chain(), map, chain().keyframes.size() - kKeyframesInUse);
+    revisit_tracker_.start(graph(), map, graph().keyframes.size() - kKeyframesInUse);
     return true;
   }
 
   void follow() {
     if (revisit_tracker_.is_lost()) {
-      find_loops(chain(), chain().keyframes.size() - kKeyframesInUse, loop_search(), known_);
+      find_loops(graph(), graph().keyframes.size() - kKeyframesInUse, loop_search(), known_);
       if (!observer_.keep_going()) return;
     }
-    RevisitTracker::Followed followed = revisit_tracker_.follow(chain(), known_.candidates);
-    const std::size_t num_open = chain().keyframes.size() - followed.num_followed;
+    RevisitTracker::Followed followed = revisit_tracker_.follow(graph(), known_.candidates);
+    const std::size_t num_open = graph().keyframes.size() - followed.num_followed;
     retire(followed.redundant, followed.map);
     revisit_tracker_.renew(std::move(followed.map), num_open);
   }
 
   void retire(const std::vector<std::optional<ReplacementKeyframe>>& redundant, OptimizedMap& map) {
-    for (std::size_t i = 0; i < chain().edges.size(); ++i) {
+    for (std::size_t i = 0; i < graph().edges.size(); ++i) {
       const bool stays = !redundant[i] && !redundant[i + 1];
-      if (!stays && !chain().edges[i].culled_covariance) judge(map, i);
+      if (!stays && !graph().edges[i].culled_covariance) judge(map, i);
     }
-    cull_keyframes(redundant, options_, map, chain(), known_);
+    cull_keyframes(redundant, options_, map, graph(), known_);
   }
 
   /// A link that goes has its verdict now.
-  void judge(const OptimizedMap& map, std::size_t link) {
-    ScanResult& outcome = result_.scans[chain().keyframes[link + 1].scan_index];
-    judge_edge(chain(), map, link, options_.robust.matcher.confidence, sink_, outcome);
+  void judge(const OptimizedMap& map, std::size_t edge) {
+    ScanResult& outcome = result_.scans[graph().keyframes[edge + 1].scan_index];
+    judge_edge(graph(), map, edge, options_.robust.matcher.confidence, sink_, outcome);
   }
 
   const MappingOptions& options_;
@@ -222,13 +222,13 @@ class Reading {
   LoopCandidates known_;
 };
 
-void trace_revised(const KeyframeGraph& chain, TraceSink& sink) {
-  for (std::size_t i = 0; i < chain.edges.size(); ++i) {
-    const OdometryEdge& link = chain.edges[i];
-    if (!link.verified) continue;
-    sink.on_revision({chain.keyframes[i].scan_index, chain.keyframes[i + 1].scan_index, link.candidates,
-                      link.verified->support_by_others, link.verified->parallel_support, link.verified->in_map,
-                      link.verified->candidate, link.verified->probability});
+void trace_revised(const KeyframeGraph& graph, TraceSink& sink) {
+  for (std::size_t i = 0; i < graph.edges.size(); ++i) {
+    const OdometryEdge& edge = graph.edges[i];
+    if (!edge.verified) continue;
+    sink.on_revision({graph.keyframes[i].scan_index, graph.keyframes[i + 1].scan_index, edge.candidates,
+                      edge.verified->support_by_others, edge.verified->parallel_support, edge.verified->in_map,
+                      edge.verified->candidate, edge.verified->probability});
   }
 }
 
@@ -244,27 +244,27 @@ void map_robustly(const Log& log, const MappingOptions& options, RunObserver& ob
 
   const auto execution = [&](RunObserver& asked) { return Execution{options.run.threads, asked}; };
 
-  KeyframeGraph& chain = reading.chain();
+  KeyframeGraph& graph = reading.graph();
   OptimizedMap map;
   if (options.robust.loops.close_loops) {
-    find_loops(chain, chain.keyframes.size(),
+    find_loops(graph, graph.keyframes.size(),
                {options.robust.matcher.search, options.robust.loop_detection, execution(unless_interrupted()), store},
                reading.known());
     const Improbable improbable =
         options.robust.edge_verification.doubt_below > 0.0 ? Improbable::kStays : Improbable::kIsCut;
-    map = optimized_map(chain, reading.known().candidates, improbable, options.robust, execution(unless_interrupted()));
+    map = optimized_map(graph, reading.known().candidates, improbable, options.robust, execution(unless_interrupted()));
   } else {
-    map = map_of_odometry(chain, options.robust);
+    map = map_of_odometry(graph, options.robust);
   }
   const Execution rest = execution(unless_interrupted());
-  SweepCorrections sweeps = refine_sweeps_of_map(chain, options.robust, rest, map);
-  if (options.robust.loops.close_loops && verify_doubtful_edges(options.robust, rest, store, chain, map)) {
-    sweeps = refine_sweeps_of_map(chain, options.robust, rest, map);
+  SweepCorrections sweeps = refine_sweeps_of_map(graph, options.robust, rest, map);
+  if (options.robust.loops.close_loops && verify_doubtful_edges(options.robust, rest, store, graph, map)) {
+    sweeps = refine_sweeps_of_map(graph, options.robust, rest, map);
   }
   result.times.loops_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.loops = std::move(map.loops);
-  if (sink) trace_revised(chain, *sink);
-  Placing(log, chain, map, sweeps, options, sink, result).run();
+  if (sink) trace_revised(graph, *sink);
+  Placing(log, graph, map, sweeps, options, sink, result).run();
   if (!observer.keep_going()) throw Interrupted();
 }
 

@@ -55,11 +55,11 @@ class Views {
   std::vector<std::size_t> last_use_;
 };
 
-bool has_shape(const ScanView& view, const char* which, const MappingOptions& options, ScanMatch& alignment) {
+bool has_shape(const ScanView& view, const char* which, const MappingOptions& options, ScanMatch& match) {
   if (view.size() >= static_cast<std::size_t>(options.shape.min_points)) return true;
-  alignment.status = MatchStatus::kNoShape;
-  alignment.reason = std::string("the ") + which + " has only " + std::to_string(view.size()) + " shape points, " +
-                     std::to_string(options.shape.min_points) + " are needed";
+  match.status = MatchStatus::kNoShape;
+  match.reason = std::string("the ") + which + " has only " + std::to_string(view.size()) + " shape points, " +
+                 std::to_string(options.shape.min_points) + " are needed";
   return false;
 }
 
@@ -68,10 +68,10 @@ AlignedPair align_pair(const ScanPair& pair, const ScanView& reference, const Sc
   using Clock = std::chrono::steady_clock;
   AlignedPair result;
   result.pair = pair;
-  if (!has_shape(reference, "reference", options, result.alignment)) return result;
-  if (!has_shape(query, "query", options, result.alignment)) return result;
+  if (!has_shape(reference, "reference", options, result.match)) return result;
+  if (!has_shape(query, "query", options, result.match)) return result;
   const auto start = Clock::now();
-  result.alignment = match_scans(reference, query, options.robust.matcher);
+  result.match = match_scans(reference, query, options.robust.matcher);
   result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (const auto& given = pair.given_ref_from_query) {
     result.given = ranked_pose(candidate_at(reference, query, *given, options.robust.matcher.search));

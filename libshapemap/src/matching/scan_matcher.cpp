@@ -15,20 +15,20 @@ std::string text_of(const char* before, double value, const char* after) {
   return stream.str();
 }
 
-void give_verdict(ScanMatch& alignment, double agree, const ConfidenceOptions& options) {
-  const double deviation_m = worst_deviation_m(alignment.covariance);
+void give_verdict(ScanMatch& match, double agree, const ConfidenceOptions& options) {
+  const double deviation_m = worst_deviation_m(match.covariance);
   if (agree < options.min_agree) {
-    alignment.status = MatchStatus::kTooLittleOverlap;
-    alignment.reason = text_of("only a share of ", agree, " of the points agrees with what the other scan saw");
-    alignment.ref_from_query = kNoPose;
-  } else if (alignment.probability < options.sure_probability) {
-    alignment.status = MatchStatus::kAmbiguous;
-    alignment.reason = text_of("the pose is right with a probability of ", alignment.probability, " only");
+    match.status = MatchStatus::kTooLittleOverlap;
+    match.reason = text_of("only a share of ", agree, " of the points agrees with what the other scan saw");
+    match.ref_from_query = kNoPose;
+  } else if (match.probability < options.sure_probability) {
+    match.status = MatchStatus::kAmbiguous;
+    match.reason = text_of("the pose is right with a probability of ", match.probability, " only");
   } else if (deviation_m > options.max_deviation_m) {
-    alignment.status = MatchStatus::kDegenerate;
-    alignment.reason = text_of("in one direction the position is known to ", deviation_m, " m only");
+    match.status = MatchStatus::kDegenerate;
+    match.reason = text_of("in one direction the position is known to ", deviation_m, " m only");
   } else {
-    alignment.status = MatchStatus::kOk;
+    match.status = MatchStatus::kOk;
   }
 }
 
@@ -54,26 +54,26 @@ RankedPose ranked_pose(const MatchCandidate& pose) {
 
 ScanMatch judged(const std::vector<MatchCandidate>& candidates, std::size_t chosen, double margin,
                  const ConfidenceOptions& options, std::optional<double> probability) {
-  ScanMatch alignment;
+  ScanMatch match;
   if (candidates.empty()) {
-    alignment.status = MatchStatus::kNoCorrespondences;
-    alignment.reason = "no pose brings similar surfaces together";
-    return alignment;
+    match.status = MatchStatus::kNoCorrespondences;
+    match.reason = "no pose brings similar surfaces together";
+    return match;
   }
   const MatchCandidate& best = candidates.at(chosen);
-  alignment.ref_from_query = best.ref_from_query;
-  alignment.probability = probability ? *probability : match_probability(best, margin);
-  alignment.covariance = pose_covariance(best.fit);
-  alignment.ranked.push_back(ranked_pose(best));
+  match.ref_from_query = best.ref_from_query;
+  match.probability = probability ? *probability : match_probability(best, margin);
+  match.covariance = pose_covariance(best.fit);
+  match.ranked.push_back(ranked_pose(best));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (i != chosen) alignment.ranked.push_back(ranked_pose(candidates[i]));
+    if (i != chosen) match.ranked.push_back(ranked_pose(candidates[i]));
   }
   // Those that scans further back have lent stand behind the others.
-  std::stable_sort(alignment.ranked.begin() + 1, alignment.ranked.end(),
+  std::stable_sort(match.ranked.begin() + 1, match.ranked.end(),
                    [](const RankedPose& a, const RankedPose& b) { return a.score > b.score; });
-  alignment.overlap_ratio = alignment.ranked.front().agree;
-  give_verdict(alignment, alignment.overlap_ratio, options);
-  return alignment;
+  match.overlap_ratio = match.ranked.front().agree;
+  give_verdict(match, match.overlap_ratio, options);
+  return match;
 }
 
 ScanMatch match_scans(const ScanView& reference, const ScanView& query, const MatcherOptions& options) {

@@ -24,41 +24,41 @@ class PaperChain {
     options_.align.min_points = options.shape.min_points;
   }
 
-  void add(std::size_t index, const Scan& position, MapResult& result) {
+  void add(std::size_t index, const Scan& scan, MapResult& result) {
     const auto start = std::chrono::steady_clock::now();
-    const Shape shape = shape_of(position, options_.returns, options_.polylines, options_.shape);
+    const Shape shape = shape_of(scan, options_.returns, options_.polylines, options_.shape);
     result.times.shape_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (sink_) sink_->on_shape(index, shape.points);
 
     ScanResult outcome;
     outcome.scan_index = index;
-    outcome.timestamp_s = position.timestamp_s;
+    outcome.timestamp_s = scan.timestamp_s;
     if (shape.size() < static_cast<std::size_t>(options_.shape.min_points)) {
-      outcome.alignment.status = MatchStatus::kNoShape;
+      outcome.match.status = MatchStatus::kNoShape;
       outcome.reason = "only " + std::to_string(shape.size()) + " shape points, " +
                        std::to_string(options_.shape.min_points) + " are needed";
       recent_.clear();
     } else {
-      place(position, shape, outcome, result);
+      place(scan, shape, outcome, result);
     }
     result.scans.push_back(std::move(outcome));
   }
 
  private:
-  void place(const Scan& position, const Shape& shape, ScanResult& outcome, MapResult& result) {
+  void place(const Scan& scan, const Shape& shape, ScanResult& outcome, MapResult& result) {
     PlacedScan placed;
     placed.scan_index = outcome.scan_index;
-    placed.timestamp_s = position.timestamp_s;
-    placed.robot_from_sweep.resize(position.sweeps.size());
+    placed.timestamp_s = scan.timestamp_s;
+    placed.robot_from_sweep.resize(scan.sweeps.size());
     outcome.starts_component = true;
     if (!recent_.empty()) {
-      outcome.alignment = aligned(outcome.scan_index, shape);
-      add_times(outcome.alignment, result.times);
-      outcome.reason = outcome.alignment.reason;
-      if (outcome.alignment.ok()) {
+      outcome.match = aligned(outcome.scan_index, shape);
+      add_times(outcome.match, result.times);
+      outcome.reason = outcome.match.reason;
+      if (outcome.match.ok()) {
         outcome.starts_component = false;
-        placed.map_from_robot = recent_.back().placed.map_from_robot * outcome.alignment.ref_from_query;
-        placed.robot_from_sweep = outcome.alignment.query_from_sweep;
+        placed.map_from_robot = recent_.back().placed.map_from_robot * outcome.match.ref_from_query;
+        placed.robot_from_sweep = outcome.match.query_from_sweep;
       } else {
         recent_.clear();
       }

@@ -76,30 +76,31 @@ std::optional<EvenBeams> even_beams(const StatedAngles& stated, std::size_t num_
   return EvenBeams{stated.first_rad, *step_rad, agree ? AngleSource::kAsStated : AngleSource::kStep};
 }
 
-void set_beam_angles(Sweep& scan, std::vector<double> angles_rad) {
-  scan.first_angle_rad = angles_rad.empty() ? 0.0 : angles_rad.front();
-  scan.angle_step_rad = runs_clockwise(angles_rad) ? -typical_spacing_rad(angles_rad) : typical_spacing_rad(angles_rad);
-  scan.beam_angles_rad = std::move(angles_rad);
+void set_beam_angles(Sweep& sweep, std::vector<double> angles_rad) {
+  sweep.first_angle_rad = angles_rad.empty() ? 0.0 : angles_rad.front();
+  sweep.angle_step_rad =
+      runs_clockwise(angles_rad) ? -typical_spacing_rad(angles_rad) : typical_spacing_rad(angles_rad);
+  sweep.beam_angles_rad = std::move(angles_rad);
 }
 
-Sweep on_even_beams(const Sweep& scan) {
-  if (scan.is_evenly_spaced()) return scan;
-  Sweep even = scan;
+Sweep on_even_beams(const Sweep& sweep) {
+  if (sweep.is_evenly_spaced()) return sweep;
+  Sweep even = sweep;
   even.beam_angles_rad.clear();
   even.beam_times_s.clear();
   even.intensities.clear();
   even.beam_time_step_s = 0.0;
-  const double step_rad = std::abs(scan.angle_step_rad);
-  const auto [lowest, highest] = std::minmax_element(scan.beam_angles_rad.begin(), scan.beam_angles_rad.end());
+  const double step_rad = std::abs(sweep.angle_step_rad);
+  const auto [lowest, highest] = std::minmax_element(sweep.beam_angles_rad.begin(), sweep.beam_angles_rad.end());
   even.first_angle_rad = *lowest;
   even.angle_step_rad = step_rad;
   const double span_rad = std::min(*highest - *lowest, kTurn_rad);
   const auto last = static_cast<std::size_t>(step_rad > 0.0 ? std::lround(span_rad / step_rad) : 0);
   even.ranges_m.assign(last + 1, std::numeric_limits<float>::quiet_NaN());
-  for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) {
-    const double steps = step_rad > 0.0 ? (scan.beam_angles_rad[i] - *lowest) / step_rad : 0.0;
+  for (std::size_t i = 0; i < sweep.ranges_m.size(); ++i) {
+    const double steps = step_rad > 0.0 ? (sweep.beam_angles_rad[i] - *lowest) / step_rad : 0.0;
     float& range_m = even.ranges_m[std::min(last, static_cast<std::size_t>(std::lround(steps)))];
-    const float reading_m = scan.ranges_m[i];
+    const float reading_m = sweep.ranges_m[i];
     if (std::isnan(range_m) || (reading_m > 0.0F && reading_m < range_m)) range_m = reading_m;
   }
   return even;

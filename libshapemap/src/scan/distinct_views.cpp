@@ -34,8 +34,7 @@ void DistinctViews::add_sweep(std::size_t turn) {
   const RangeSample::SampledSweep& sweep = sample_.sweeps()[turn * stride_ % sample_.sweeps().size()];
   for (std::size_t i = sweep.first_fragment; i < sweep.end_fragment; ++i) {
     const Fragment& fragment = sample_.fragments()[i];
-    if (fragment.farthest_mm < window_.from_mm - side_mm_ || fragment.nearest_mm >= window_.end_mm + side_mm_)
-      continue;
+    if (fragment.farthest_mm < window_.from_mm - side_mm_ || fragment.nearest_mm >= window_.end_mm + side_mm_) continue;
     const Shares shares = shares_of(fragment);
     const double most = std::max({shares.inside, shares.below, shares.above});
     if (most <= 0.0) continue;
@@ -87,8 +86,7 @@ bool DistinctViews::is_same(const View& a, const View& b) const {
   return !standing.is_alike() || turned.mean() - standing.mean() <= kClearly * deviation;
 }
 
-DistinctViews::Likeness DistinctViews::likeness(const View& a, double middle_a, const View& b,
-                                                  double middle_b) const {
+DistinctViews::Likeness DistinctViews::likeness(const View& a, double middle_a, const View& b, double middle_b) const {
   const RangeSample::SampledSweep& of_a = sample_.sweeps()[a.sweep];
   const RangeSample::SampledSweep& of_b = sample_.sweeps()[b.sweep];
   const Millimetres* of_a_mm = sample_.readings(of_a);

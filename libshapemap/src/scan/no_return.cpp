@@ -43,8 +43,8 @@ struct Sensor {
 std::vector<Sensor> sensors_of(Log& log) {
   std::vector<Sensor> sensors;
   std::map<std::string, std::size_t> known;
-  for (Scan& position : log.scans) {
-    for (Sweep& sweep : position.sweeps) {
+  for (Scan& scan : log.scans) {
+    for (Sweep& sweep : scan.sweeps) {
       const auto [at, is_new] = known.emplace(sweep.sensor_label, sensors.size());
       if (is_new) sensors.push_back({sweep.sensor_label, {}, {}});
       sensors[at->second].sweeps.push_back(&sweep);

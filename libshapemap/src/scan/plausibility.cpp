@@ -39,14 +39,14 @@ std::string first_fault(std::initializer_list<Bounded> numbers) {
 }
 
 /// Where the beams of a scan point that is evenly spaced.
-std::string fault_of_angles(const Sweep& scan, std::size_t num_beams) {
-  const double step_rad = std::abs(scan.angle_step_rad);
+std::string fault_of_angles(const Sweep& sweep, std::size_t num_beams) {
+  const double step_rad = std::abs(sweep.angle_step_rad);
   const std::string out_of_bounds =
-      first_fault({{"first_angle", scan.first_angle_rad, kMostScanAngle_rad, " rad", "at most two full turns"},
-                   {"angle_step", scan.angle_step_rad, 2.0 * kPi, " rad", "at most a full turn"}});
+      first_fault({{"first_angle", sweep.first_angle_rad, kMostScanAngle_rad, " rad", "at most two full turns"},
+                   {"angle_step", sweep.angle_step_rad, 2.0 * kPi, " rad", "at most a full turn"}});
   if (!out_of_bounds.empty() || num_beams < 2) return out_of_bounds;
   if (step_rad < kLeastStep_rad) {
-    return stated("angle_step", scan.angle_step_rad, " rad",
+    return stated("angle_step", sweep.angle_step_rad, " rad",
                   "at least 1e-06 for a scan of " + std::to_string(num_beams) + " beams");
   }
   const double span_rad = step_rad * static_cast<double>(num_beams - 1);
@@ -55,38 +55,38 @@ std::string fault_of_angles(const Sweep& scan, std::size_t num_beams) {
 }
 
 /// Where beams with an angle each point. What is made of them has a place for every step between the outermost.
-std::string fault_of_beam_angles(const Sweep& scan) {
-  for (const double angle_rad : scan.beam_angles_rad) {
+std::string fault_of_beam_angles(const Sweep& sweep) {
+  for (const double angle_rad : sweep.beam_angles_rad) {
     if (std::abs(angle_rad) <= kMostScanAngle_rad) continue;  // written so that NaN is a fault
     return stated("a beam's angle", angle_rad, " rad", "at most two full turns");
   }
-  const auto [lowest, highest] = std::minmax_element(scan.beam_angles_rad.begin(), scan.beam_angles_rad.end());
-  const double step_rad = std::abs(scan.angle_step_rad);
+  const auto [lowest, highest] = std::minmax_element(sweep.beam_angles_rad.begin(), sweep.beam_angles_rad.end());
+  const double step_rad = std::abs(sweep.angle_step_rad);
   if (step_rad == 0.0 || *highest - *lowest <= step_rad * static_cast<double>(kMostBeams)) return "";
   return stated("beams' angles with a step", step_rad, " rad", "at most a million steps from the first to the last");
 }
 
 /// Each list is empty or has an entry for each reading.
-std::string fault_of_lists(const Sweep& scan) {
-  const std::size_t num_readings = scan.ranges_m.size();
+std::string fault_of_lists(const Sweep& sweep) {
+  const std::size_t num_readings = sweep.ranges_m.size();
   for (const auto& [name, size] :
-       {std::pair{"beam angles", scan.beam_angles_rad.size()}, std::pair{"beam times", scan.beam_times_s.size()},
-        std::pair{"intensities", scan.intensities.size()}}) {
+       {std::pair{"beam angles", sweep.beam_angles_rad.size()}, std::pair{"beam times", sweep.beam_times_s.size()},
+        std::pair{"intensities", sweep.intensities.size()}}) {
     if (size == 0 || size == num_readings) continue;
     return std::to_string(size) + " " + name + ", expected none or " + std::to_string(num_readings);
   }
   return "";
 }
 
-std::string fault_of_times(const Sweep& scan) {
+std::string fault_of_times(const Sweep& sweep) {
   constexpr const char* kExpected = "at most a day from the position's timestamp";
-  for (const float time_s : scan.beam_times_s) {
+  for (const float time_s : sweep.beam_times_s) {
     if (!(std::abs(static_cast<double>(time_s)) <= kMostSweep_s)) {
       return stated("a beam's time", static_cast<double>(time_s), " s", kExpected);
     }
   }
-  return first_fault({{"the first beam's time", scan.start_s, kMostSweep_s, " s", kExpected},
-                      {"time_step", scan.beam_time_step_s, kMostSweep_s, " s", kExpected}});
+  return first_fault({{"the first beam's time", sweep.start_s, kMostSweep_s, " s", kExpected},
+                      {"time_step", sweep.beam_time_step_s, kMostSweep_s, " s", kExpected}});
 }
 
 std::string fault_of_mount(const MountPose& mount) {
@@ -101,25 +101,26 @@ std::string fault_of_mount(const MountPose& mount) {
 }
 
 /// Limits below 0 say no more than 0 does.
-std::string fault_of_limits(const Sweep& scan) {
-  return first_fault({{"min_range", scan.min_range_m, kMostMinRange_m, " m", "at most 1000 m"},
-                      {"max_range", scan.max_range_m, kMostMaxRange_m, " m", "a finite number, or 0 for none"},
-                      {"heading", scan.nominal_heading_rad, kMostHeading_rad, " rad", "at most a hundred turns"}});
+std::string fault_of_limits(const Sweep& sweep) {
+  return first_fault({{"min_range", sweep.min_range_m, kMostMinRange_m, " m", "at most 1000 m"},
+                      {"max_range", sweep.max_range_m, kMostMaxRange_m, " m", "a finite number, or 0 for none"},
+                      {"heading", sweep.nominal_heading_rad, kMostHeading_rad, " rad", "at most a hundred turns"}});
 }
 
 }  // namespace
 
-std::string implausibility(const Sweep& scan, std::size_t num_beams) {
+std::string implausibility(const Sweep& sweep, std::size_t num_beams) {
   if (num_beams > kMostBeams) return std::to_string(num_beams) + " beams, expected at most a million";
   for (const std::string& fault :
-       {fault_of_lists(scan), scan.is_evenly_spaced() ? fault_of_angles(scan, num_beams) : fault_of_beam_angles(scan),
-        fault_of_times(scan), fault_of_mount(scan.robot_from_sensor), fault_of_limits(scan)}) {
+       {fault_of_lists(sweep),
+        sweep.is_evenly_spaced() ? fault_of_angles(sweep, num_beams) : fault_of_beam_angles(sweep),
+        fault_of_times(sweep), fault_of_mount(sweep.robot_from_sensor), fault_of_limits(sweep)}) {
     if (!fault.empty()) return fault;
   }
   return "";
 }
 
-std::string implausibility(const Sweep& scan) { return implausibility(scan, scan.ranges_m.size()); }
+std::string implausibility(const Sweep& sweep) { return implausibility(sweep, sweep.ranges_m.size()); }
 
 std::string implausibility(const Pose2& pose) {
   return first_fault({{"x", pose.x_m, kMostCoordinate_m, " m", "at most 1e+09 m"},
@@ -136,19 +137,19 @@ std::string implausible_count(std::size_t num_before, const char* what) {
   return "more than " + std::to_string(kMostScans) + " " + what + ", expected a log of fewer";
 }
 
-std::string implausibility(const Scan& position) {
-  std::string fault = implausible_time(position.timestamp_s);
-  if (fault.empty() && position.reference_pose) {
-    fault = implausibility(*position.reference_pose);
+std::string implausibility(const Scan& scan) {
+  std::string fault = implausible_time(scan.timestamp_s);
+  if (fault.empty() && scan.reference_pose) {
+    fault = implausibility(*scan.reference_pose);
     if (!fault.empty()) fault = "reference pose: " + fault;
   }
-  if (fault.empty() && position.recorded_heading_rad) {
-    fault = first_fault({{"the recorded heading", *position.recorded_heading_rad, kMostHeading_rad, " rad",
-                          "at most a hundred turns"}});
+  if (fault.empty() && scan.recorded_heading_rad) {
+    fault = first_fault(
+        {{"the recorded heading", *scan.recorded_heading_rad, kMostHeading_rad, " rad", "at most a hundred turns"}});
   }
-  for (std::size_t s = 0; fault.empty() && s < position.sweeps.size(); ++s) {
-    fault = implausibility(position.sweeps[s]);
-    if (!fault.empty() && position.sweeps.size() > 1) fault = "sub-scan " + std::to_string(s) + ": " + fault;
+  for (std::size_t s = 0; fault.empty() && s < scan.sweeps.size(); ++s) {
+    fault = implausibility(scan.sweeps[s]);
+    if (!fault.empty() && scan.sweeps.size() > 1) fault = "sub-scan " + std::to_string(s) + ": " + fault;
   }
   return fault;
 }

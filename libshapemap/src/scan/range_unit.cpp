@@ -98,8 +98,8 @@ void scale_ranges(Log& log, RangeUnit unit) {
   const double scale = metres_per(unit);
   if (scale == 1.0) return;
   const double middle = readings_of(log).middle;
-  for (Scan& position : log.scans) {
-    for (Sweep& sweep : position.sweeps) {
+  for (Scan& scan : log.scans) {
+    for (Sweep& sweep : scan.sweeps) {
       for (float& range : sweep.ranges_m) range = static_cast<float>(range * scale);
       if (sweep.max_range_m >= middle) sweep.max_range_m *= scale;
       if (sweep.min_range_m * scale >= kLeastMinRange_m) sweep.min_range_m *= scale;

@@ -26,7 +26,7 @@ void sort_by_angle(const Sweep& sweep, std::vector<Return>& returns) {
 class BeamPoints {
  public:
   explicit BeamPoints(const Sweep& sweep)
-      : sub_scan_(sweep),
+      : sweep_(sweep),
         robot_from_sensor_(rotation_of(sweep.robot_from_sensor)),
         mount_m_(sweep.robot_from_sensor.x_m, sweep.robot_from_sensor.y_m) {}
 
@@ -34,15 +34,15 @@ class BeamPoints {
   double up() const { return robot_from_sensor_(2, 2); }
 
   Point2 at(std::size_t beam, double range_m) const {
-    const double angle_rad = sub_scan_.beam_angle_rad(beam);
+    const double angle_rad = sweep_.beam_angle_rad(beam);
     const Eigen::Vector3d direction =
         robot_from_sensor_ * Eigen::Vector3d(std::cos(angle_rad), std::sin(angle_rad), 0.0);
     const Point2 p_at_heading = mount_m_ + range_m * direction.head<2>();
-    return rotate(p_at_heading, sub_scan_.nominal_heading_rad);
+    return rotate(p_at_heading, sweep_.nominal_heading_rad);
   }
 
  private:
-  const Sweep& sub_scan_;
+  const Sweep& sweep_;
   Eigen::Matrix3d robot_from_sensor_;
   Point2 mount_m_;
 };

@@ -25,7 +25,7 @@ using Order = std::vector<std::size_t>;
 Times times_of(const std::vector<Scan>& scans) {
   Times times_s;
   times_s.reserve(scans.size());
-  for (const Scan& position : scans) times_s.push_back(position.timestamp_s);
+  for (const Scan& scan : scans) times_s.push_back(scan.timestamp_s);
   return times_s;
 }
 

@@ -89,14 +89,14 @@ bool looks_all_round(const ScanView& view) {
   return seen_rad >= kAllRound_rad;
 }
 
-ScanView view_of(const Scan& position, const ReturnOptions& returns, const PolylineOptions& polylines,
+ScanView view_of(const Scan& scan, const ReturnOptions& returns, const PolylineOptions& polylines,
                  const ShapeOptions& shape, const ViewOptions& options) {
   ScanView view;
   std::vector<ShapePoint> all;
-  for (std::size_t s = 0; s < position.sweeps.size(); ++s) {
-    const SweepShape part = sweep_shape(position.sweeps[s], static_cast<int>(s), returns, polylines, shape);
+  for (std::size_t s = 0; s < scan.sweeps.size(); ++s) {
+    const SweepShape part = sweep_shape(scan.sweeps[s], static_cast<int>(s), returns, polylines, shape);
     all.insert(all.end(), part.shape_points.begin(), part.shape_points.end());
-    view.images.push_back(range_image(position.sweeps[s], part));
+    view.images.push_back(range_image(scan.sweeps[s], part));
   }
   view.tangents = tangent_histogram(all);
   view.reach_m = reach_m(view.images);

@@ -30,7 +30,7 @@ void thin_out(std::vector<Point>& points, std::size_t max_points) {
 
 }  // namespace
 
-SweepShape sweep_shape(const Sweep& sweep, int sub_scan_index, const ReturnOptions& returns,
+SweepShape sweep_shape(const Sweep& sweep, int sweep_index, const ReturnOptions& returns,
                        const PolylineOptions& polylines, const ShapeOptions& options) {
   SweepShape shape;
   std::vector<Return> hits = returns_in_robot(sweep, returns);
@@ -41,7 +41,7 @@ SweepShape sweep_shape(const Sweep& sweep, int sub_scan_index, const ReturnOptio
   shape.polylines = fit_polylines(shape.scan_points, polylines);
   if (options.points == ShapePoints::kResampled) {
     for (const LineSegment& segment : shape.polylines.segments) {
-      resample(segment, sub_scan_index, options.spacing_m, shape.shape_points);
+      resample(segment, sweep_index, options.spacing_m, shape.shape_points);
     }
     return shape;
   }
@@ -49,28 +49,28 @@ SweepShape sweep_shape(const Sweep& sweep, int sub_scan_index, const ReturnOptio
     const int closest = shape.polylines.closest_segment[i];
     if (closest < 0) continue;
     const double tangent_rad = shape.polylines.segments[static_cast<std::size_t>(closest)].tangent_rad();
-    shape.shape_points.push_back({shape.scan_points[i].p_m, tangent_rad, sub_scan_index});
+    shape.shape_points.push_back({shape.scan_points[i].p_m, tangent_rad, sweep_index});
   }
   return shape;
 }
 
-Shape shape_of(const Scan& position, const ReturnOptions& returns, const PolylineOptions& polylines,
+Shape shape_of(const Scan& scan, const ReturnOptions& returns, const PolylineOptions& polylines,
                const ShapeOptions& options) {
   Shape shape;
-  shape.num_sweeps = static_cast<int>(position.sweeps.size());
+  shape.num_sweeps = static_cast<int>(scan.sweeps.size());
   for (int s = 0; s < shape.num_sweeps; ++s) {
-    const auto part = sweep_shape(position.sweeps[static_cast<std::size_t>(s)], s, returns, polylines, options);
+    const auto part = sweep_shape(scan.sweeps[static_cast<std::size_t>(s)], s, returns, polylines, options);
     shape.points.insert(shape.points.end(), part.shape_points.begin(), part.shape_points.end());
   }
   thin_out(shape.points, static_cast<std::size_t>(options.max_points));
   return shape;
 }
 
-Shape moved(const Shape& shape, const Pose2& b_from_a, const std::vector<Pose2>& sub_scan_poses) {
+Shape moved(const Shape& shape, const Pose2& b_from_a, const std::vector<Pose2>& sweep_poses) {
   Shape result = shape;
   for (ShapePoint& point : result.points) {
-    const bool corrected = !sub_scan_poses.empty();
-    const Pose2 pose = corrected ? b_from_a * sub_scan_poses[static_cast<std::size_t>(point.sweep)] : b_from_a;
+    const bool corrected = !sweep_poses.empty();
+    const Pose2 pose = corrected ? b_from_a * sweep_poses[static_cast<std::size_t>(point.sweep)] : b_from_a;
     point.p_m = pose * point.p_m;
     point.tangent_rad = wrap_angle(point.tangent_rad + pose.theta_rad);
   }

@@ -120,11 +120,11 @@ TEST(Deskew, AClockwiseLaserInAMirroredWorldIsTheMirrorImage) {
 TEST(Deskew, BeamsThatAreListedFromLastToFirstAreKnownByThat) {
   const test::World world = test::cluttered_room(5);
   Log log = test::bent_log(world, test::swinging(30 * kDegree, 0.2), kSweeps, noisy());
-  for (Scan& position : log.scans) {
-    Sweep& scan = position.sweeps[0];
-    std::reverse(scan.ranges_m.begin(), scan.ranges_m.end());
-    scan.first_angle_rad = scan.beam_angle_rad(scan.ranges_m.size() - 1);
-    scan.angle_step_rad = -scan.angle_step_rad;
+  for (Scan& scan : log.scans) {
+    Sweep& sweep = scan.sweeps[0];
+    std::reverse(sweep.ranges_m.begin(), sweep.ranges_m.end());
+    sweep.first_angle_rad = sweep.beam_angle_rad(sweep.ranges_m.size() - 1);
+    sweep.angle_step_rad = -sweep.angle_step_rad;
   }
   const Straightened result = straightened_log(log);
   EXPECT_NEAR(result.verdicts[0].sweep_time_s, -0.1, 1e-9);
@@ -137,7 +137,7 @@ TEST(Deskew, TimesThatTheLogTellsAreUsed) {
   laser.sweep_share = 0.6;
   laser.view_rad = 240 * kDegree;
   Log log = test::bent_log(world, test::swinging(40 * kDegree, 0.2), kSweeps, laser);
-  for (Scan& position : log.scans) position.sweeps[0].beam_time_step_s = laser.beam_step_s();
+  for (Scan& scan : log.scans) scan.sweeps[0].beam_time_step_s = laser.beam_step_s();
   const Straightened result = straightened_log(log);
   EXPECT_TRUE(result.verdicts[0].told);
   EXPECT_NEAR(result.verdicts[0].sweep_time_s, 0.06, 1e-3);
@@ -148,7 +148,7 @@ TEST(Deskew, TimesThatCannotBeAreTold) {
   const test::World world = test::cluttered_room(5);
   for (const double lie_s : {1e-9, 1.0}) {
     Log log = test::bent_log(world, test::swinging(30 * kDegree, 0.2), kSweeps, noisy());
-    for (Scan& position : log.scans) position.sweeps[0].beam_time_step_s = lie_s;
+    for (Scan& scan : log.scans) scan.sweeps[0].beam_time_step_s = lie_s;
     const Straightened result = straightened_log(log);
     ASSERT_EQ(result.warnings.size(), 1U);
     EXPECT_THAT(result.warnings[0], HasSubstr("sweeps are 0.1 s apart"));
@@ -162,7 +162,7 @@ TEST(Deskew, TimesThatScansContradictAreTold) {
   RollingLaser at_once = noisy();
   at_once.sweep_share = 0.0;
   Log log = test::bent_log(world, test::swinging(30 * kDegree, 0.2), kSweeps, at_once);
-  for (Scan& position : log.scans) position.sweeps[0].beam_time_step_s = noisy().beam_step_s();
+  for (Scan& scan : log.scans) scan.sweeps[0].beam_time_step_s = noisy().beam_step_s();
   const Straightened result = straightened_log(log);
   EXPECT_FALSE(result.verdicts[0].straightened);
   ASSERT_EQ(result.warnings.size(), 1U);
@@ -172,9 +172,9 @@ TEST(Deskew, TimesThatScansContradictAreTold) {
 TEST(Deskew, TimesThatTheLogTellsNeedNoProof) {
   const test::World world = test::cluttered_room(5);
   Log log = test::bent_log(world, test::swinging(30 * kDegree, 0.2), 12, noisy());
-  for (Scan& position : log.scans) position.sweeps[0].beam_time_step_s = noisy().beam_step_s();
+  for (Scan& scan : log.scans) scan.sweeps[0].beam_time_step_s = noisy().beam_step_s();
   EXPECT_TRUE(straightened_log(log).verdicts[0].straightened);
-  for (Scan& position : log.scans) position.sweeps[0].beam_time_step_s = 0.0;
+  for (Scan& scan : log.scans) scan.sweeps[0].beam_time_step_s = 0.0;
   EXPECT_FALSE(straightened_log(log).verdicts[0].straightened);
 }
 
@@ -252,7 +252,7 @@ TEST(Deskew, AnEmptyLogAndScansWithoutReturnsAreNoTrouble) {
   DeskewOptions on;
   on.mode = Deskew::kOn;
   EXPECT_TRUE(is_same(straightened_log(log, on).log, log));
-  for (Scan& position : log.scans) position.sweeps.clear();
+  for (Scan& scan : log.scans) scan.sweeps.clear();
   EXPECT_EQ(straightened_log(log, on).log.scans.size(), 12U);
 }
 
@@ -291,7 +291,7 @@ TEST(Deskew, AThinnedRecordingIsJudgedByTheTurnsOfItsLaser) {
 /// One time in another unit must cost neither memory nor the rest of the log.
 TEST(Deskew, ABeamThatWasSentFarFromItsSweepEndsARun) {
   Log log = test::bent_log(test::cluttered_room(5), test::swinging(30 * kDegree, 0.2), kSweeps, noisy());
-  for (Scan& position : log.scans) position.sweeps[0].beam_time_step_s = 0.1 / 120;
+  for (Scan& scan : log.scans) scan.sweeps[0].beam_time_step_s = 0.1 / 120;
   log.scans[20].sweeps[0].start_s = 1e6;
   const Straightened result = straightened_log(log);
   EXPECT_TRUE(result.verdicts[0].straightened);
@@ -304,24 +304,24 @@ TEST(Deskew, EchoesOfOneBeamStayPlausible) {
   Log log = test::bent_log(test::cluttered_room(5), test::swinging(30 * kDegree, 0.2), 20, noisy());
   DeskewOptions on;
   on.mode = Deskew::kOn;
-  for (Scan& position : log.scans) {
-    Sweep& scan = position.sweeps[0];
-    Sweep echoes = scan;
+  for (Scan& scan : log.scans) {
+    Sweep& sweep = scan.sweeps[0];
+    Sweep echoes = sweep;
     echoes.ranges_m.clear();
     std::vector<double> angles_rad;
-    for (std::size_t i = 0; i < scan.ranges_m.size(); ++i) {
+    for (std::size_t i = 0; i < sweep.ranges_m.size(); ++i) {
       for (const float farther_m : {0.0F, 0.4F}) {
-        echoes.ranges_m.push_back(scan.ranges_m[i] + farther_m);
-        angles_rad.push_back(scan.beam_angle_rad(i));
+        echoes.ranges_m.push_back(sweep.ranges_m[i] + farther_m);
+        angles_rad.push_back(sweep.beam_angle_rad(i));
         echoes.beam_times_s.push_back(static_cast<float>(static_cast<double>(i) * 0.1 / 120));
       }
     }
     set_beam_angles(echoes, angles_rad);
-    scan = echoes;
+    sweep = echoes;
   }
   const Straightened result = straightened_log(log, on);
   EXPECT_TRUE(result.verdicts[0].straightened);
-  for (const Scan& position : result.log.scans) EXPECT_EQ(implausibility(position), "");
+  for (const Scan& scan : result.log.scans) EXPECT_EQ(implausibility(scan), "");
 }
 
 TEST(ChanceOfGains, IsThatOfTheTablesOfTheSignedRankTest) {

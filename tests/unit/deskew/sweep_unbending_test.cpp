@@ -18,10 +18,10 @@ constexpr double kRounding_m = 1e-5;  // of ranges as floats
 
 /// By the exact motion.
 void unbend(Log& log, const test::Motion& world_from_laser, const RollingLaser& laser) {
-  for (Scan& position : log.scans) {
-    const double start_s = position.timestamp_s;
-    for (Sweep& scan : position.sweeps) {
-      scan = unbent(scan, {}, [&](std::size_t beam) {
+  for (Scan& scan : log.scans) {
+    const double start_s = scan.timestamp_s;
+    for (Sweep& sweep : scan.sweeps) {
+      sweep = unbent(sweep, {}, [&](std::size_t beam) {
         return inverse(world_from_laser(start_s)) *
                world_from_laser(start_s + static_cast<double>(beam) * laser.beam_step_s());
       });
@@ -49,13 +49,13 @@ TEST(Unbent, AMountedAndUpsideDownLaserSeesTheSame) {
   const RollingLaser laser;
   Log log = test::bent_log(
       world, [&](double time_s) { return robot(time_s) * robot_from_sensor; }, 6, laser);
-  for (Scan& position : log.scans) {
-    Sweep& scan = position.sweeps[0];
+  for (Scan& scan : log.scans) {
+    Sweep& sweep = scan.sweeps[0];
     // What runs counterclockwise above runs clockwise for a laser that hangs from the ceiling.
-    scan.first_angle_rad = -scan.first_angle_rad;
-    scan.angle_step_rad = -scan.angle_step_rad;
-    scan.robot_from_sensor = {0.3, -0.2, 0.0, 1.1, 0.0, kPi};
-    position.reference_pose = robot(position.timestamp_s);
+    sweep.first_angle_rad = -sweep.first_angle_rad;
+    sweep.angle_step_rad = -sweep.angle_step_rad;
+    sweep.robot_from_sensor = {0.3, -0.2, 0.0, 1.1, 0.0, kPi};
+    scan.reference_pose = robot(scan.timestamp_s);
   }
   EXPECT_GT(test::off_the_walls_m(log, world), 0.05);
   unbend(log, robot, laser);
@@ -71,24 +71,24 @@ TEST(Unbent, WhatGoesRoundMoreThanOnceIsSeenOnce) {
   };
   Log more = test::bent_log(world, turning(1.0), 1, laser);
   unbend(more, turning(1.0), laser);
-  const Sweep& scan = more.scans[0].sweeps[0];
+  const Sweep& sweep = more.scans[0].sweeps[0];
   const double expected = laser.num_beams * 360.0 / 410.0;
-  EXPECT_NEAR(static_cast<double>(scan.ranges_m.size()), expected, 2.0);
-  EXPECT_LE(scan.beam_angles_rad.back() - scan.beam_angles_rad.front(), 2 * kPi);
+  EXPECT_NEAR(static_cast<double>(sweep.ranges_m.size()), expected, 2.0);
+  EXPECT_LE(sweep.beam_angles_rad.back() - sweep.beam_angles_rad.front(), 2 * kPi);
   Log less = test::bent_log(world, turning(-1.0), 1, laser);
   unbend(less, turning(-1.0), laser);
   EXPECT_EQ(less.scans[0].sweeps[0].ranges_m.size(), static_cast<std::size_t>(laser.num_beams));
 }
 
 TEST(Unbent, BeamsAreSortedAndThoseWithoutReturnTurned) {
-  Sweep scan;
-  scan.first_angle_rad = -0.2;
-  scan.angle_step_rad = 0.1;
-  scan.max_range_m = 10.0;
-  scan.ranges_m = {0.5F, std::numeric_limits<float>::quiet_NaN(), 10.0F, 3.0F};
-  scan.intensities = {1.0F, 2.0F, 3.0F, 4.0F};
+  Sweep sweep;
+  sweep.first_angle_rad = -0.2;
+  sweep.angle_step_rad = 0.1;
+  sweep.max_range_m = 10.0;
+  sweep.ranges_m = {0.5F, std::numeric_limits<float>::quiet_NaN(), 10.0F, 3.0F};
+  sweep.intensities = {1.0F, 2.0F, 3.0F, 4.0F};
   // Sideways by a metre at the first beam: what is near there is seen in quite another direction.
-  const Sweep straight = unbent(scan, {}, [](std::size_t beam) {
+  const Sweep straight = unbent(sweep, {}, [](std::size_t beam) {
     return beam == 0 ? Pose2{0.0, 1.0, 0.0} : Pose2{0.0, 0.0, 0.01 * static_cast<double>(beam)};
   });
   ASSERT_EQ(straight.ranges_m.size(), 4U);
@@ -102,13 +102,13 @@ TEST(Unbent, BeamsAreSortedAndThoseWithoutReturnTurned) {
 }
 
 TEST(MostBent, IsHowFarAHitMoves) {
-  Sweep scan;
-  scan.angle_step_rad = 0.1;
-  scan.max_range_m = 10.0;
-  scan.ranges_m = {2.0F, 4.0F, 10.0F};
+  Sweep sweep;
+  sweep.angle_step_rad = 0.1;
+  sweep.max_range_m = 10.0;
+  sweep.ranges_m = {2.0F, 4.0F, 10.0F};
   const auto turned = [](std::size_t beam) { return Pose2{0.0, 0.0, 0.01 * static_cast<double>(beam)}; };
-  EXPECT_NEAR(most_bent_m(scan, {}, turned), 0.04, 1e-5);
-  EXPECT_EQ(most_bent_m(scan, {}, [](std::size_t) { return Pose2{}; }), 0.0);
+  EXPECT_NEAR(most_bent_m(sweep, {}, turned), 0.04, 1e-5);
+  EXPECT_EQ(most_bent_m(sweep, {}, [](std::size_t) { return Pose2{}; }), 0.0);
 }
 
 }  // namespace

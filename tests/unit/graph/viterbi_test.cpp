@@ -12,19 +12,19 @@ namespace {
 
 constexpr double kFullMargin = 20.0;
 
-ViterbiChain random_chain(std::mt19937& rng, std::size_t num_links, std::size_t most_alternatives, double spread) {
+ViterbiChain random_chain(std::mt19937& rng, std::size_t num_edges, std::size_t most_alternatives, double spread) {
   std::uniform_real_distribution<double> value(-spread, spread);
   std::uniform_int_distribution<std::size_t> count(1, most_alternatives);
   ViterbiChain chain;
-  chain.scores.resize(num_links);
-  chain.transition_scores.resize(num_links);
+  chain.scores.resize(num_edges);
+  chain.transition_scores.resize(num_edges);
   for (std::vector<double>& scores : chain.scores) {
     scores.resize(count(rng));
     for (double& score : scores) score = value(rng);
   }
-  for (std::size_t link = 0; link + 1 < num_links; ++link) {
-    chain.transition_scores[link].assign(chain.scores[link].size(), std::vector<double>(chain.scores[link + 1].size()));
-    for (std::vector<double>& row : chain.transition_scores[link]) {
+  for (std::size_t edge = 0; edge + 1 < num_edges; ++edge) {
+    chain.transition_scores[edge].assign(chain.scores[edge].size(), std::vector<double>(chain.scores[edge + 1].size()));
+    for (std::vector<double>& row : chain.transition_scores[edge]) {
       for (double& transition_scores : row) transition_scores = value(rng);
     }
   }
@@ -33,18 +33,18 @@ ViterbiChain random_chain(std::mt19937& rng, std::size_t num_links, std::size_t 
 
 double sum_of(const ViterbiChain& chain, const std::vector<std::size_t>& taken) {
   double sum = 0.0;
-  for (std::size_t link = 0; link < taken.size(); ++link) {
-    sum += chain.scores[link][taken[link]];
-    if (link + 1 < taken.size()) sum += chain.transition_scores[link][taken[link]][taken[link + 1]];
+  for (std::size_t edge = 0; edge < taken.size(); ++edge) {
+    sum += chain.scores[edge][taken[edge]];
+    if (edge + 1 < taken.size()) sum += chain.transition_scores[edge][taken[edge]][taken[edge + 1]];
   }
   return sum;
 }
 
 /// The next combination of alternatives, as an odometer counts; false after the last.
 bool advance(const ViterbiChain& chain, std::vector<std::size_t>& taken) {
-  for (std::size_t link = 0; link < taken.size(); ++link) {
-    if (++taken[link] < chain.scores[link].size()) return true;
-    taken[link] = 0;
+  for (std::size_t edge = 0; edge < taken.size(); ++edge) {
+    if (++taken[edge] < chain.scores[edge].size()) return true;
+    taken[edge] = 0;
   }
   return false;
 }
@@ -57,8 +57,8 @@ std::vector<Choice> by_enumeration(const ViterbiChain& chain) {
   std::vector<std::size_t> taken(chain.scores.size(), 0);
   do {
     const double sum = sum_of(chain, taken);
-    for (std::size_t link = 0; link < taken.size(); ++link) {
-      best[link][taken[link]] = std::max(best[link][taken[link]], sum);
+    for (std::size_t edge = 0; edge < taken.size(); ++edge) {
+      best[edge][taken[edge]] = std::max(best[edge][taken[edge]], sum);
     }
   } while (advance(chain, taken));
   std::vector<Choice> choices;
@@ -78,16 +78,16 @@ std::vector<Choice> by_enumeration(const ViterbiChain& chain) {
 TEST(BestChoices, AreThoseOfAllCombinations) {
   std::mt19937 rng(1);
   for (int round = 0; round < 500; ++round) {
-    const std::size_t num_links = 1 + static_cast<std::size_t>(round) % 6;
+    const std::size_t num_edges = 1 + static_cast<std::size_t>(round) % 6;
     const double spread = round % 3 == 0 ? 30.0 : 3.0;  // some beyond the full margin
-    const ViterbiChain chain = random_chain(rng, num_links, 4, spread);
+    const ViterbiChain chain = random_chain(rng, num_edges, 4, spread);
     const std::vector<Choice> expected = by_enumeration(chain);
     const std::vector<Choice> found = viterbi(chain, kFullMargin);
     ASSERT_EQ(found.size(), expected.size());
-    for (std::size_t link = 0; link < found.size(); ++link) {
-      EXPECT_EQ(found[link].candidate, expected[link].candidate) << round;
-      EXPECT_NEAR(found[link].margin, expected[link].margin, 1e-9) << round;
-      EXPECT_THAT(found[link].behind, ::testing::Pointwise(::testing::DoubleNear(1e-9), expected[link].behind));
+    for (std::size_t edge = 0; edge < found.size(); ++edge) {
+      EXPECT_EQ(found[edge].candidate, expected[edge].candidate) << round;
+      EXPECT_NEAR(found[edge].margin, expected[edge].margin, 1e-9) << round;
+      EXPECT_THAT(found[edge].behind, ::testing::Pointwise(::testing::DoubleNear(1e-9), expected[edge].behind));
     }
   }
 }

@@ -35,8 +35,8 @@ Scanner far_scanner(int num_beams = 180) {
   return scanner;
 }
 
-float& reading(PlacedLog& walk, std::size_t position, std::size_t beam) {
-  return walk.log.scans.at(position).sweeps.at(0).ranges_m.at(beam);
+float& reading(PlacedLog& walk, std::size_t scan, std::size_t beam) {
+  return walk.log.scans.at(scan).sweeps.at(0).ranges_m.at(beam);
 }
 
 World box_room(double half_x_m, double half_y_m) {

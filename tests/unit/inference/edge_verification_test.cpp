@@ -29,11 +29,11 @@ struct Torn {
         first = n;
         moved = poses[n - 1] * inverse(truth[n - 1]) * (truth[n - 1] * true_step(n - 1) * wrong * inverse(truth[n]));
       }
-      pieces.push_back(first);
+      submaps.push_back(first);
       poses.push_back(moved * truth[n]);
     }
-    for (const std::size_t link : tears) {
-      doubts.push_back({link, {{inverse(poses[link]) * poses[link + 1], 1.0}, {true_step(link) * kTooFar, 1.5}}});
+    for (const std::size_t edge : tears) {
+      doubts.push_back({edge, {{inverse(poses[edge]) * poses[edge + 1], 1.0}, {true_step(edge) * kTooFar, 1.5}}});
     }
   }
 
@@ -41,35 +41,35 @@ struct Torn {
 
   VerifiedMap verified(double least_probability = 0.7, int threads = 1) {
     RunObserver nobody;
-    return verify_edges(views, poses, pieces, doubts, {}, least_probability, threads, nobody);
+    return verify_edges(views, poses, submaps, doubts, {}, least_probability, threads, nobody);
   }
 
   std::vector<Pose2> truth;
   test::Views views;
   std::vector<Pose2> poses;
-  std::vector<std::size_t> pieces;
+  std::vector<std::size_t> submaps;
   std::vector<DoubtfulEdge> doubts;
 };
 
 /// Per link: the candidate that joins, or kCut.
 std::vector<int> choices(const VerifiedMap& verified) {
   std::vector<int> chosen;
-  for (const VerifiedEdge& link : verified.edges)
-    chosen.push_back(link.joins ? static_cast<int>(link.candidate) : kCut);
+  for (const VerifiedEdge& edge : verified.edges)
+    chosen.push_back(edge.joins ? static_cast<int>(edge.candidate) : kCut);
   return chosen;
 }
 
 /// By itself, the right candidate is the worst.
-TEST(ReviseLinks, TakesWhatAllScansSayAndNotTheTwoAlone) {
+TEST(VerifyEdges, TakesWhatAllScansSayAndNotTheTwoAlone) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
   const VerifiedMap verified = map.verified();
   EXPECT_THAT(choices(verified), ElementsAre(2));
-  EXPECT_THAT(verified.piece_of_node, Each(verified.piece_of_node.front()));
+  EXPECT_THAT(verified.submap_of_node, Each(verified.submap_of_node.front()));
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 1e-6);
 }
 
-TEST(ReviseLinks, RepairsSeveralOnlyOneOfWhichIsRight) {
+TEST(VerifyEdges, RepairsSeveralOnlyOneOfWhichIsRight) {
   Torn map({3, 8});
   map.doubts[0].candidates.push_back({map.true_step(3), 0.0});
   map.doubts[1].candidates[0].a_from_b = map.true_step(8);  // the map is right here
@@ -80,27 +80,27 @@ TEST(ReviseLinks, RepairsSeveralOnlyOneOfWhichIsRight) {
 }
 
 /// The scores are those that the two scans give.
-TEST(ReviseLinks, SplitsWhereNoCandidateIsRight) {
+TEST(VerifyEdges, SplitsWhereNoCandidateIsRight) {
   Torn map({6});
   for (DoubtfulEdge::Candidate& candidate : map.doubts[0].candidates) {
     candidate.score = candidate_at(*map.views[6], *map.views[7], candidate.a_from_b, {}).score;
   }
   const VerifiedMap verified = map.verified();
   EXPECT_THAT(choices(verified), ElementsAre(kCut));
-  EXPECT_NE(verified.piece_of_node[6], verified.piece_of_node[7]);
+  EXPECT_NE(verified.submap_of_node[6], verified.submap_of_node[7]);
   for (std::size_t n = 0; n < map.poses.size(); ++n) {
     EXPECT_THAT(verified.map_from_node[n], HasSameBits(map.poses[n])) << "pieces stay where they are";
   }
 }
 
-TEST(ReviseLinks, JoinsNothingWhenNothingIsProbableEnough) {
+TEST(VerifyEdges, JoinsNothingWhenNothingIsProbableEnough) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
   EXPECT_THAT(choices(map.verified(1.0)), ElementsAre(kCut));
 }
 
 /// However good both are: the rival's score goes from far behind to far ahead.
-TEST(ReviseLinks, SplitsWhereTwoPlacesFitAlike) {
+TEST(VerifyEdges, SplitsWhereTwoPlacesFitAlike) {
   Torn map({6});
   const Pose2 away = map.doubts[0].candidates[0].a_from_b;
   std::vector<int> chosen;
@@ -113,7 +113,7 @@ TEST(ReviseLinks, SplitsWhereTwoPlacesFitAlike) {
 }
 
 /// Along a corridor, and the more the less far; not across it.
-TEST(ReviseLinks, IsNearlyRightWhereItSlides) {
+TEST(VerifyEdges, IsNearlyRightWhereItSlides) {
   Torn map({6});
   const auto probability = [&](const Point2& off_m, const Eigen::Vector3d& deviations) {
     const Eigen::Matrix3d covariance = deviations.cwiseAbs2().asDiagonal();
@@ -131,7 +131,7 @@ TEST(ReviseLinks, IsNearlyRightWhereItSlides) {
 }
 
 /// Nearly the same twice leaves no doubt about where the piece is.
-TEST(ReviseLinks, CountsNoNeighbourAsARival) {
+TEST(VerifyEdges, CountsNoNeighbourAsARival) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
   map.doubts[0].candidates.push_back({map.true_step(6) * Pose2{0.05, 0.0, 0.5 * kDegree}, 0.0});
@@ -142,7 +142,7 @@ TEST(ReviseLinks, CountsNoNeighbourAsARival) {
 }
 
 /// The map's pose is aligned to more than the two scans.
-TEST(ReviseLinks, LeavesThePieceWhereTheMapHasItWhenThatIsTheSamePlace) {
+TEST(VerifyEdges, LeavesThePieceWhereTheMapHasItWhenThatIsTheSamePlace) {
   Torn map({6}, Pose2{0.05, 0.0, 0.5 * kDegree});
   map.doubts[0].candidates = {{map.doubts[0].candidates[0].a_from_b, 0.0}, {map.true_step(6), 5.0}};
   const VerifiedMap verified = map.verified();
@@ -150,7 +150,7 @@ TEST(ReviseLinks, LeavesThePieceWhereTheMapHasItWhenThatIsTheSamePlace) {
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.poses), 1e-6);
 }
 
-TEST(ReviseLinks, IsLessSureWithARivalAndWhereAllAreBad) {
+TEST(VerifyEdges, IsLessSureWithARivalAndWhereAllAreBad) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 10.0});
   const double alone = map.verified().edges[0].probability;
@@ -161,7 +161,7 @@ TEST(ReviseLinks, IsLessSureWithARivalAndWhereAllAreBad) {
   EXPECT_LT(map.verified().edges[0].probability, 0.8) << "it may be none of them";
 }
 
-TEST(ReviseLinks, IsLessSureOfScansThatSeeLittle) {
+TEST(VerifyEdges, IsLessSureOfScansThatSeeLittle) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
   const double sure = map.verified().edges[0].probability;
@@ -173,17 +173,17 @@ TEST(ReviseLinks, IsLessSureOfScansThatSeeLittle) {
 struct TornTwice : Torn {
   explicit TornTwice(std::size_t last = 8, std::size_t count = 14) : Torn({3, last}, kTurnedAway, count) {
     for (std::size_t n = last + 1; n < truth.size(); ++n) {
-      pieces[n] = pieces[0];
+      submaps[n] = submaps[0];
       poses[n] = truth[n];
     }
     for (DoubtfulEdge& doubt : doubts) {
-      const Pose2 step = true_step(doubt.link);
-      doubt.candidates = {{inverse(poses[doubt.link]) * poses[doubt.link + 1], -9.0}, {step, -9.0}};
+      const Pose2 step = true_step(doubt.edge);
+      doubt.candidates = {{inverse(poses[doubt.edge]) * poses[doubt.edge + 1], -9.0}, {step, -9.0}};
     }
   }
 };
 
-TEST(ReviseLinks, BelievesWhatTheWayThereAndTheWayBackBothSay) {
+TEST(VerifyEdges, BelievesWhatTheWayThereAndTheWayBackBothSay) {
   TornTwice map;
   const VerifiedMap both = map.verified(1.0);
   EXPECT_GT(both.edges[0].parallel_support[1], 0.0);
@@ -196,7 +196,7 @@ TEST(ReviseLinks, BelievesWhatTheWayThereAndTheWayBackBothSay) {
   EXPECT_LT(one.edges[0].probability, both.edges[0].probability);
 }
 
-TEST(ReviseLinks, JoinsParallelLinksTogether) {
+TEST(VerifyEdges, JoinsParallelLinksTogether) {
   TornTwice map;
   map.doubts[0].candidates[1].score = 8.0;
   const VerifiedMap verified = map.verified();
@@ -205,19 +205,19 @@ TEST(ReviseLinks, JoinsParallelLinksTogether) {
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 1e-6);
 }
 
-TEST(ReviseLinks, LeavesParallelLinksOutThatSayOtherwise) {
+TEST(VerifyEdges, LeavesParallelLinksOutThatSayOtherwise) {
   TornTwice map;
   map.doubts[0].candidates[1].score = 8.0;
   map.doubts[1].candidates[1].a_from_b = map.true_step(8) * kTooFar;
   const VerifiedMap verified = map.verified();
   EXPECT_THAT(choices(verified), ElementsAre(1, kCut));
   EXPECT_LE(verified.edges[1].probability, 1.0 - verified.edges[0].probability);
-  EXPECT_THAT(verified.piece_of_node, Each(verified.piece_of_node.front()));
+  EXPECT_THAT(verified.submap_of_node, Each(verified.submap_of_node.front()));
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 1e-6);
 }
 
 /// Too far along the chain to tell each other anything, but not to be held together.
-TEST(ReviseLinks, JoinsParallelLinksThatAreFarApart) {
+TEST(VerifyEdges, JoinsParallelLinksThatAreFarApart) {
   TornTwice map(24, 30);
   map.doubts[0].candidates[1].score = 8.0;
   map.doubts[1].candidates[1].a_from_b = map.true_step(24) * Pose2{0.5, 0.0, 0.0};
@@ -228,7 +228,7 @@ TEST(ReviseLinks, JoinsParallelLinksThatAreFarApart) {
 }
 
 /// What nobody was asked about stays, unless it contradicts what was joined.
-TEST(ReviseLinks, StopsBetweenTwoLinksThatContradictEachOther) {
+TEST(VerifyEdges, StopsBetweenTwoLinksThatContradictEachOther) {
   struct StopsAfter : RunObserver {
     explicit StopsAfter(int asked) : left(asked) {}
     bool keep_going() override { return left-- > 0; }
@@ -239,13 +239,13 @@ TEST(ReviseLinks, StopsBetweenTwoLinksThatContradictEachOther) {
   map.doubts[1].candidates.pop_back();
   const auto chosen = [&](int asked) {
     StopsAfter observer(asked);
-    return choices(verify_edges(map.views, map.poses, map.pieces, map.doubts, {}, 0.7, 1, observer));
+    return choices(verify_edges(map.views, map.poses, map.submaps, map.doubts, {}, 0.7, 1, observer));
   };
   EXPECT_THAT(chosen(0), ElementsAre(0, 0));
   EXPECT_THAT(chosen(1), ElementsAre(1, kCut));
 }
 
-TEST(ReviseLinks, IsLessSureOfAPlaceThatTwoScansHoldInNoDirection) {
+TEST(VerifyEdges, IsLessSureOfAPlaceThatTwoScansHoldInNoDirection) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
   const double held = map.verified().edges[0].probability;
@@ -253,7 +253,7 @@ TEST(ReviseLinks, IsLessSureOfAPlaceThatTwoScansHoldInNoDirection) {
   EXPECT_LT(map.verified().edges[0].probability, held - 0.01);
 }
 
-TEST(ReviseLinks, TellsTheBestOfWhatIsNotJoined) {
+TEST(VerifyEdges, TellsTheBestOfWhatIsNotJoined) {
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
   const VerifiedEdge best = map.verified(1.0).edges[0];
@@ -262,20 +262,20 @@ TEST(ReviseLinks, TellsTheBestOfWhatIsNotJoined) {
   EXPECT_FALSE(best.joins);
 }
 
-TEST(ReviseLinks, LeavesAllAsItWasWhenAskedToStop) {
+TEST(VerifyEdges, LeavesAllAsItWasWhenAskedToStop) {
   struct Impatient : RunObserver {
     bool keep_going() override { return false; }
   } impatient;
   Torn map({6});
   map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
-  const VerifiedMap verified = verify_edges(map.views, map.poses, map.pieces, map.doubts, {}, 0.7, 1, impatient);
+  const VerifiedMap verified = verify_edges(map.views, map.poses, map.submaps, map.doubts, {}, 0.7, 1, impatient);
   EXPECT_THAT(choices(verified), ElementsAre(0));
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.poses), 1e-6);
 }
 
-TEST(ReviseLinks, IsTheSameToTheBitForAnyNumberOfThreads) {
+TEST(VerifyEdges, IsTheSameToTheBitForAnyNumberOfThreads) {
   Torn map({3, 8});
-  for (DoubtfulEdge& doubt : map.doubts) doubt.candidates.push_back({map.true_step(doubt.link), 0.0});
+  for (DoubtfulEdge& doubt : map.doubts) doubt.candidates.push_back({map.true_step(doubt.edge), 0.0});
   const VerifiedMap one = map.verified(0.7, 1);
   const VerifiedMap three = map.verified(0.7, 3);
   EXPECT_EQ(choices(one), choices(three));

@@ -18,17 +18,17 @@ using ::testing::ElementsAre;
 
 /// Once round the ring and a bit more, with a loop where it meets itself and one that is wrong.
 struct Ring {
-  explicit Ring(double drift_rad = 0.0) : edges(test::drifting_links(truth, drift_rad)) {}
+  explicit Ring(double drift_rad = 0.0) : edges(test::drifting_edges(truth, drift_rad)) {}
 
   MapObjective problem() { return {views, edges, clusters, {}, options, 1}; }
 
-  void spoil(std::size_t link, bool keep_right) {
-    std::vector<EdgeChoices::Candidate>& candidates = edges[link].candidates;
+  void spoil(std::size_t edge, bool keep_right) {
+    std::vector<EdgeChoices::Candidate>& candidates = edges[edge].candidates;
     const EdgeChoices::Candidate right = candidates[0];
     candidates[0].a_from_b = right.a_from_b * Pose2{0.3, -0.5, 70 * kDegree};
     candidates[0].score = 1.0;
     if (keep_right) candidates.push_back(right);
-    edges[link].probability = 0.4;
+    edges[edge].probability = 0.4;
   }
 
   std::vector<Pose2> truth = test::ring_walk(kRingLap + 8, 2);

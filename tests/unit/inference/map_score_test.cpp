@@ -79,7 +79,7 @@ TEST(MapScore, IsBestForTheTruthAndWorseTheMoreTheMapIsBent) {
   double before = ring.score.of(ring.truth);
   EXPECT_GT(before, 0.0);
   for (const double drift_deg : {0.4, 1.2}) {
-    const std::vector<Pose2> bent = test::chained(test::drifting_links(ring.truth, drift_deg * kDegree));
+    const std::vector<Pose2> bent = test::chained(test::drifting_edges(ring.truth, drift_deg * kDegree));
     const double value = ring.score.of(bent);
     EXPECT_LT(value, before - 10.0) << drift_deg;
     before = value;
@@ -90,7 +90,7 @@ TEST(MapScore, IsBestForTheTruthAndWorseTheMoreTheMapIsBent) {
 TEST(MapScore, OfWhatOnlyALongChainHoldsCountsLittle) {
   const std::vector<Pose2> truth = test::ring_walk(2 * test::kRingLap, 2);
   const test::Views views = test::views_along(test::ring_world(1), truth);
-  const std::vector<Pose2> bent = test::chained(test::drifting_links(truth, 1.2 * kDegree));
+  const std::vector<Pose2> bent = test::chained(test::drifting_edges(truth, 1.2 * kDegree));
   ASSERT_GT(truth.size(), 45U) << "some pairs are far along the chain";
   std::vector<std::size_t> one_each(truth.size());
   std::iota(one_each.begin(), one_each.end(), std::size_t{0});
@@ -137,7 +137,7 @@ TEST(MapScore, DoesNotDependOnTheFrameOfTheMap) {
 
 TEST(MapScore, ThatRemembersGivesWhatAFreshOneGives) {
   Ring ring;
-  const std::vector<Pose2> bent = test::chained(test::drifting_links(ring.truth, 1.0 * kDegree), ring.truth[0]);
+  const std::vector<Pose2> bent = test::chained(test::drifting_edges(ring.truth, 1.0 * kDegree), ring.truth[0]);
   const auto fresh = [&](const std::vector<Pose2>& poses) { return MapScore(ring.views, {}, 1).of(poses); };
   const double of_truth = ring.score.of(ring.truth);
   const double of_bent = ring.score.of(bent);
@@ -245,21 +245,22 @@ TEST(MapEvidenceBetween, IsWhatAWholeMapGainsByThePairsOfBothPieces) {
 
 TEST(MapEvidenceBetween, DoesNotDependOnWhichPieceComesFirst) {
   Ring ring;
-  const TwoPieces pieces(ring.truth, nodes(0, 12, kAll), nodes(46, 58, kAll));
-  const double one = pieces.between(ring.score);
-  const double other = MapScore(ring.views, {}, 1).between(pieces.pose, pieces.g, pieces.f, inverse(pieces.f_from_g));
+  const TwoPieces submaps(ring.truth, nodes(0, 12, kAll), nodes(46, 58, kAll));
+  const double one = submaps.between(ring.score);
+  const double other =
+      MapScore(ring.views, {}, 1).between(submaps.pose, submaps.g, submaps.f, inverse(submaps.f_from_g));
   EXPECT_NEAR(one, other, 1e-3 * one);
 }
 
 /// Of all pairs, each asked by itself. What a pair that tells for the map is worth is found from what is left of it
 /// when both nodes gain half of it, at most 1 each.
-double by_each_pair(const TwoPieces& pieces, const test::Views& views, const Pose2& moved) {
+double by_each_pair(const TwoPieces& submaps, const test::Views& views, const Pose2& moved) {
   MapScore score(views, {}, 1);
   double sum = 0.0;
   std::map<std::size_t, double> gained;
-  for (const std::size_t i : pieces.f) {
-    for (const std::size_t j : pieces.g) {
-      const double left = score.between(pieces.pose, {i}, {j}, moved * pieces.f_from_g);
+  for (const std::size_t i : submaps.f) {
+    for (const std::size_t j : submaps.g) {
+      const double left = score.between(submaps.pose, {i}, {j}, moved * submaps.f_from_g);
       const bool is_of_one_stretch = std::max(i, j) - std::min(i, j) < 8;
       if (left < 0.0 || is_of_one_stretch) {
         sum += left;
@@ -278,20 +279,20 @@ double by_each_pair(const TwoPieces& pieces, const test::Views& views, const Pos
 TEST(MapEvidenceBetween, OfManyPairsIsEstimatedWell) {
   const std::vector<Pose2> truth = test::ring_walk(160, 2);
   const test::Views views = test::views_along(test::ring_world(1), truth);
-  const TwoPieces pieces(truth, nodes(0, 100, kAll), nodes(100, 160, kAll));
+  const TwoPieces submaps(truth, nodes(0, 100, kAll), nodes(100, 160, kAll));
   for (const Pose2& moved : {Pose2{}, Pose2{1.0, -1.0, 0.2}}) {
     MapScore score(views, {}, 1);
-    const double expected = by_each_pair(pieces, views, moved);
-    EXPECT_NEAR(pieces.between(score, moved), expected, 0.15 * std::abs(expected));
+    const double expected = by_each_pair(submaps, views, moved);
+    EXPECT_NEAR(submaps.between(score, moved), expected, 0.15 * std::abs(expected));
     MapScore by_three(views, {}, 3);
-    EXPECT_EQ(pieces.between(by_three, moved), pieces.between(score, moved)) << "to the bit";
+    EXPECT_EQ(submaps.between(by_three, moved), submaps.between(score, moved)) << "to the bit";
   }
 }
 
 TEST(MapEvidenceBetween, IsNoneOfPiecesThatDoNotMeet) {
   Ring ring;
-  const TwoPieces pieces(ring.truth, nodes(0, 12, kAll), nodes(46, 58, kAll));
-  EXPECT_EQ(pieces.between(ring.score, {100.0, 0.0, 0.0}), 0.0);
+  const TwoPieces submaps(ring.truth, nodes(0, 12, kAll), nodes(46, 58, kAll));
+  EXPECT_EQ(submaps.between(ring.score, {100.0, 0.0, 0.0}), 0.0);
   EXPECT_EQ(ring.score.between(ring.truth, {}, {1, 2}, {}), 0.0);
   EXPECT_EQ(ring.score.between(ring.truth, {3}, {4}, {}), 0.0) << "neighbours tell nothing new";
 }

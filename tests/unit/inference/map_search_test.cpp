@@ -27,7 +27,7 @@ constexpr double kGood_m = 0.35;
 
 /// A ring that is walked once and a bit, with a chain that drifts to the left all the time.
 struct Ring {
-  explicit Ring(double drift_rad = 0.5 * kDegree) : edges(test::drifting_links(truth, drift_rad)) {}
+  explicit Ring(double drift_rad = 0.5 * kDegree) : edges(test::drifting_edges(truth, drift_rad)) {}
 
   LoopCluster again(double strength) const { return test::cluster_of(truth, 0, kRingLap, kAgain, strength); }
 
@@ -97,7 +97,7 @@ TEST(CloseLoops, RefusesALoopThatIsWrongHoweverStrong) {
 /// The graph could bear it; the scans speak against it.
 TEST(CloseLoops, RefusesALoopThatPullsScansThatAgreeApart) {
   Ring ring(0.0);
-  for (EdgeChoices& link : ring.edges) link.candidates[0].covariance = test::covariance_of(0.3, 10 * kDegree);
+  for (EdgeChoices& edge : ring.edges) edge.candidates[0].covariance = test::covariance_of(0.3, 10 * kDegree);
   const auto shifted_by = [&](double shift_m) {
     return test::cluster_of(ring.truth, 0, kRingLap, kAgain, 12.0, {shift_m, 0.0, 0.0});
   };
@@ -142,12 +142,12 @@ TEST(CloseLoops, CutsALinkThatIsWrongWithoutAnAlternative) {
 void turn_node(Ring& ring, std::size_t node) {
   const Pose2 turned{0.0, 0.0, kPi};
   for (const std::size_t i : {node - 1, node}) {
-    EdgeChoices& link = ring.edges[i];
-    const Pose2 right = link.candidates[0].a_from_b;
-    link.candidates.push_back(link.candidates[0]);
-    link.candidates[0].a_from_b = i < node ? right * turned : turned * right;
-    link.candidates[0].score = 1.0;
-    link.probability = 0.5;
+    EdgeChoices& edge = ring.edges[i];
+    const Pose2 right = edge.candidates[0].a_from_b;
+    edge.candidates.push_back(edge.candidates[0]);
+    edge.candidates[0].a_from_b = i < node ? right * turned : turned * right;
+    edge.candidates[0].score = 1.0;
+    edge.probability = 0.5;
   }
 }
 
@@ -192,7 +192,7 @@ struct TwoWalks {
     const test::Views more = test::views_along(test::ring_world(same_world ? 1 : 7), second, 50);
     truth.insert(truth.end(), second.begin(), second.end());
     views.insert(views.end(), more.begin(), more.end());
-    edges = test::drifting_links(truth, 0.2 * kDegree);
+    edges = test::drifting_edges(truth, 0.2 * kDegree);
     edges[kFirst - 1] = {};
   }
 

@@ -13,43 +13,43 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 
 /// A chain of three, each of whose links is most likely wrong.
-struct ImprobableChain {
-  ImprobableChain() {
+struct ImprobableEdges {
+  ImprobableEdges() {
     for (const auto& view : test::views_along(test::ring_world(1), test::ring_walk(3, 2, 4.0))) {
-      chain.keyframes.push_back({chain.keyframes.size(), 0, view, {}, {}});
+      graph.keyframes.push_back({graph.keyframes.size(), 0, view, {}, {}});
     }
-    chain.edges.resize(2);
-    for (OdometryEdge& link : chain.edges) {
-      link.candidates = {candidate_at(*chain.keyframes[0].view, *chain.keyframes[1].view, {3.0, 1.0, 1.0}, {})};
-      link.choice = {0, 0.0, {0.0}};
+    graph.edges.resize(2);
+    for (OdometryEdge& edge : graph.edges) {
+      edge.candidates = {candidate_at(*graph.keyframes[0].view, *graph.keyframes[1].view, {3.0, 1.0, 1.0}, {})};
+      edge.choice = {0, 0.0, {0.0}};
     }
   }
 
   std::vector<int> choices(Improbable improbable) const {
     RunObserver nobody;
-    return optimized_map(chain, {}, improbable, options, {1, nobody}).edge_choice;
+    return optimized_map(graph, {}, improbable, options, {1, nobody}).edge_choice;
   }
 
-  KeyframeGraph chain;
+  KeyframeGraph graph;
   RobustOptions options;
 };
 
 TEST(OptimizedMap, ImprobableLinksOfTheBareChainAreCut) {
-  const ImprobableChain walk;
-  ASSERT_LT(stated_probability(walk.chain.edges[0]), walk.options.front_end.split_below);
-  const OptimizedMap map = map_of_odometry(walk.chain, walk.options);
+  const ImprobableEdges walk;
+  ASSERT_LT(stated_probability(walk.graph.edges[0]), walk.options.front_end.split_below);
+  const OptimizedMap map = map_of_odometry(walk.graph, walk.options);
   EXPECT_THAT(map.edge_choice, Each(kCut));
   EXPECT_THAT(map.component, ElementsAre(0, 1, 2));
 }
 
 TEST(OptimizedMap, UnlessTheLimitIsLower) {
-  ImprobableChain walk;
+  ImprobableEdges walk;
   walk.options.front_end.split_below = 0.0;
-  EXPECT_THAT(map_of_odometry(walk.chain, walk.options).edge_choice, Each(0));
+  EXPECT_THAT(map_of_odometry(walk.graph, walk.options).edge_choice, Each(0));
 }
 
 TEST(OptimizedMap, WhereAllScansWillJudgeThemTheyStay) {
-  const ImprobableChain walk;
+  const ImprobableEdges walk;
   EXPECT_THAT(walk.choices(Improbable::kIsCut), Each(kCut));
   EXPECT_THAT(walk.choices(Improbable::kStays), Each(0));
 }

@@ -24,12 +24,12 @@ using ::testing::UnorderedElementsAre;
 
 using Nodes = std::vector<std::size_t>;
 
-/// The nodes of each of `num_pieces`, each node in any of them.
-std::vector<Nodes> strewn(std::mt19937& rng, std::size_t num_nodes, std::size_t num_pieces) {
-  std::uniform_int_distribution<std::size_t> any(0, num_pieces - 1);
-  std::vector<Nodes> pieces(num_pieces);
-  for (std::size_t n = 0; n < num_nodes; ++n) pieces[any(rng)].push_back(n);
-  return pieces;
+/// The nodes of each of `num_submaps`, each node in any of them.
+std::vector<Nodes> strewn(std::mt19937& rng, std::size_t num_nodes, std::size_t num_submaps) {
+  std::uniform_int_distribution<std::size_t> any(0, num_submaps - 1);
+  std::vector<Nodes> submaps(num_submaps);
+  for (std::size_t n = 0; n < num_nodes; ++n) submaps[any(rng)].push_back(n);
+  return submaps;
 }
 
 using Steps = std::set<std::tuple<std::size_t, std::size_t, std::size_t>>;
@@ -52,11 +52,11 @@ Steps by_all_pairs(const Nodes& of_f, const Nodes& of_g) {
 TEST(Crossings, ArePairsWithNoNodeOfEitherPieceBetweenThem) {
   std::mt19937 rng(1);
   for (std::size_t round = 0; round < 200; ++round) {
-    const std::vector<Nodes> pieces = strewn(rng, 2 + round % 37, 2 + round % 4);
-    const std::vector<Crossing> found = crossings(pieces[0], pieces[1]);
+    const std::vector<Nodes> submaps = strewn(rng, 2 + round % 37, 2 + round % 4);
+    const std::vector<Crossing> found = crossings(submaps[0], submaps[1]);
     Steps steps;
     for (const Crossing& crossing : found) steps.insert({crossing.in_f, crossing.in_g, crossing.num_steps});
-    EXPECT_EQ(steps, by_all_pairs(pieces[0], pieces[1])) << round;
+    EXPECT_EQ(steps, by_all_pairs(submaps[0], submaps[1])) << round;
     EXPECT_EQ(steps.size(), found.size()) << "none twice";
     EXPECT_TRUE(std::is_sorted(found.begin(), found.end(), [](const Crossing& one, const Crossing& other) {
       return std::min(one.in_f, one.in_g) < std::min(other.in_f, other.in_g);
@@ -79,7 +79,7 @@ struct TwoPieces {
     for (std::size_t n = 0; n < walk.size(); ++n) {
       const bool in_f = n / 4 % 2 == 0;
       (in_f ? of_f : of_g).push_back(n);
-      piece.push_back(in_f ? kF : kG);
+      submap.push_back(in_f ? kF : kG);
       pose.push_back(in_f ? walk[n] : inverse(f_from_g) * walk[n]);
     }
   }
@@ -107,7 +107,7 @@ struct TwoPieces {
   /// Node of `f`, node of `g`, and how the one lies to the other.
   PoseConstraint from_f(std::size_t joint) const {
     const PoseConstraint& c = joints[joint].constraint;
-    if (piece[c.a] == kF) return c;
+    if (submap[c.a] == kF) return c;
     return {c.b, c.a, inverse(c.a_from_b), c.covariance, c.loss_scale};
   }
   Pose2 said_by(std::size_t joint) const {
@@ -118,7 +118,7 @@ struct TwoPieces {
   std::vector<SubmapAlignment> ways(std::size_t piece_first = kF) const {
     Nodes all(joints.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
-    return SubmapAlignments(joints, pose, piece).ways(piece_first, all);
+    return SubmapAlignments(joints, pose, submap).ways(piece_first, all);
   }
 
   std::mt19937 rng;
@@ -126,29 +126,29 @@ struct TwoPieces {
   Nodes of_f;
   Nodes of_g;
   std::vector<Pose2> pose;
-  Nodes piece;
+  Nodes submap;
   std::vector<SubmapCandidate> joints;
 };
 
 TEST(Ways, ThatAllJointsSayAreOneWayThere) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
-    TwoPieces pieces(seed);
-    for (int k = 0; k < 12; ++k) pieces.add(pieces.f_from_g, 1.0 + pieces.any_worth(), 0.02);
-    const std::vector<SubmapAlignment> ways = pieces.ways();
+    TwoPieces submaps(seed);
+    for (int k = 0; k < 12; ++k) submaps.add(submaps.f_from_g, 1.0 + submaps.any_worth(), 0.02);
+    const std::vector<SubmapAlignment> ways = submaps.ways();
     ASSERT_EQ(ways.size(), 1U) << seed;
     EXPECT_EQ(ways[0].joints.size(), 12U);
-    EXPECT_THAT(ways[0].f_from_g, IsNearPose(pieces.f_from_g, 0.20, 1.2 * kDegree)) << seed;
-    const std::vector<SubmapAlignment> other_way = pieces.ways(kG);
+    EXPECT_THAT(ways[0].f_from_g, IsNearPose(submaps.f_from_g, 0.20, 1.2 * kDegree)) << seed;
+    const std::vector<SubmapAlignment> other_way = submaps.ways(kG);
     ASSERT_EQ(other_way.size(), 1U) << seed;
-    EXPECT_THAT(inverse(other_way[0].f_from_g), IsNearPose(pieces.f_from_g, 0.20, 1.2 * kDegree)) << seed;
+    EXPECT_THAT(inverse(other_way[0].f_from_g), IsNearPose(submaps.f_from_g, 0.20, 1.2 * kDegree)) << seed;
   }
 }
 
 TEST(Ways, OfJointsWithoutErrorAreExact) {
-  TwoPieces pieces(1);
-  for (int k = 0; k < 5; ++k) pieces.add(pieces.f_from_g, pieces.any_worth());
-  ASSERT_EQ(pieces.ways().size(), 1U);
-  EXPECT_THAT(pieces.ways()[0].f_from_g, IsNearPose(pieces.f_from_g, 1e-9, 1e-9));
+  TwoPieces submaps(1);
+  for (int k = 0; k < 5; ++k) submaps.add(submaps.f_from_g, submaps.any_worth());
+  ASSERT_EQ(submaps.ways().size(), 1U);
+  EXPECT_THAT(submaps.ways()[0].f_from_g, IsNearPose(submaps.f_from_g, 1e-9, 1e-9));
   TwoPieces lone(2);
   lone.add(lone.f_from_g, 0.0);
   ASSERT_EQ(lone.ways().size(), 1U);
@@ -158,20 +158,20 @@ TEST(Ways, OfJointsWithoutErrorAreExact) {
 
 TEST(Ways, ThatContradictEachOtherAreKeptApartAndTheSurestComesFirst) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    TwoPieces pieces(seed);
-    const Pose2 turned = pieces.f_from_g * Pose2{0.0, 0.0, kPi};
-    const Pose2 shifted = Pose2{3.0, 0.0, 0.0} * pieces.f_from_g;
-    const std::size_t best = pieces.add(turned, 5.0);
-    const std::size_t a = pieces.add(pieces.f_from_g, 4.0);
-    const std::size_t last = pieces.add(shifted, 1.0);
-    const std::size_t b = pieces.add(pieces.f_from_g, 2.0);
-    const std::vector<SubmapAlignment> ways = pieces.ways();
+    TwoPieces submaps(seed);
+    const Pose2 turned = submaps.f_from_g * Pose2{0.0, 0.0, kPi};
+    const Pose2 shifted = Pose2{3.0, 0.0, 0.0} * submaps.f_from_g;
+    const std::size_t best = submaps.add(turned, 5.0);
+    const std::size_t a = submaps.add(submaps.f_from_g, 4.0);
+    const std::size_t last = submaps.add(shifted, 1.0);
+    const std::size_t b = submaps.add(submaps.f_from_g, 2.0);
+    const std::vector<SubmapAlignment> ways = submaps.ways();
     ASSERT_EQ(ways.size(), 3U) << seed;
     EXPECT_THAT(ways[0].joints, ElementsAre(best));
     EXPECT_THAT(ways[1].joints, UnorderedElementsAre(a, b));
     EXPECT_THAT(ways[2].joints, ElementsAre(last));
     EXPECT_THAT(ways[0].f_from_g, IsNearPose(turned, 1e-9, 1e-9));
-    EXPECT_THAT(ways[1].f_from_g, IsNearPose(pieces.f_from_g, 1e-9, 1e-9));
+    EXPECT_THAT(ways[1].f_from_g, IsNearPose(submaps.f_from_g, 1e-9, 1e-9));
     EXPECT_THAT(ways[2].f_from_g, IsNearPose(shifted, 1e-9, 1e-9));
   }
 }
@@ -179,25 +179,25 @@ TEST(Ways, ThatContradictEachOtherAreKeptApartAndTheSurestComesFirst) {
 std::size_t apart(std::size_t i, std::size_t j) { return std::max(i, j) - std::min(i, j); }
 
 /// By where the node of `g` comes to lie in `f`: the seed's pose may drift, on the way along both pieces.
-bool says_the_same(const TwoPieces& pieces, std::size_t seed, std::size_t joint) {
-  const PoseConstraint s = pieces.from_f(seed);
-  const PoseConstraint c = pieces.from_f(joint);
-  const Pose2 by_seed = pieces.said_by(seed) * pieces.pose[c.b];
-  const Pose2 by_joint = pieces.pose[c.a] * c.a_from_b;
+bool says_the_same(const TwoPieces& submaps, std::size_t seed, std::size_t joint) {
+  const PoseConstraint s = submaps.from_f(seed);
+  const PoseConstraint c = submaps.from_f(joint);
+  const Pose2 by_seed = submaps.said_by(seed) * submaps.pose[c.b];
+  const Pose2 by_joint = submaps.pose[c.a] * c.a_from_b;
   const auto nodes = static_cast<double>(apart(c.a, s.a) + apart(c.b, s.b));
   return std::hypot(by_seed.x_m - by_joint.x_m, by_seed.y_m - by_joint.y_m) < 0.40 + 0.02 * nodes &&
          angle_between(by_seed.theta_rad, by_joint.theta_rad) < (6 + 0.15 * nodes) * kDegree;
 }
 
 /// The sum of the best of each node, over the side that says less.
-double strength_of(const TwoPieces& pieces, const Nodes& joints) {
+double strength_of(const TwoPieces& submaps, const Nodes& joints) {
   double sums[2] = {0.0, 0.0};
   for (const bool of_f : {true, false}) {
-    for (const std::size_t n : of_f ? pieces.of_f : pieces.of_g) {
+    for (const std::size_t n : of_f ? submaps.of_f : submaps.of_g) {
       double best = 0.0;
       for (const std::size_t joint : joints) {
-        const PoseConstraint c = pieces.from_f(joint);
-        if ((of_f ? c.a : c.b) == n) best = std::max(best, pieces.joints[joint].worth);
+        const PoseConstraint c = submaps.from_f(joint);
+        if ((of_f ? c.a : c.b) == n) best = std::max(best, submaps.joints[joint].worth);
       }
       sums[of_f ? 0 : 1] += best;
     }
@@ -206,37 +206,39 @@ double strength_of(const TwoPieces& pieces, const Nodes& joints) {
 }
 
 /// Of four relative poses, some of them near each other, with errors that often are too large.
-TwoPieces doubtful_pieces(unsigned seed) {
-  TwoPieces pieces(seed);
-  const std::vector<Pose2> said{pieces.f_from_g, Pose2{0.35, 0.0, 0.0} * pieces.f_from_g,
-                                pieces.f_from_g * Pose2{0.0, 0.1, 7 * kDegree}, pieces.f_from_g * Pose2{2.0, 0.0, 2.0}};
+TwoPieces doubtful_submaps(unsigned seed) {
+  TwoPieces submaps(seed);
+  const std::vector<Pose2> said{submaps.f_from_g, Pose2{0.35, 0.0, 0.0} * submaps.f_from_g,
+                                submaps.f_from_g * Pose2{0.0, 0.1, 7 * kDegree},
+                                submaps.f_from_g * Pose2{2.0, 0.0, 2.0}};
   std::uniform_real_distribution<double> noise(-4.0, 4.0);
   for (std::size_t k = 0; k < 10U + 2U * seed; ++k) {
-    pieces.add(said[static_cast<std::size_t>(pieces.rng()) % said.size()], pieces.any_worth(), 0.12, noise(pieces.rng));
+    submaps.add(said[static_cast<std::size_t>(submaps.rng()) % said.size()], submaps.any_worth(), 0.12,
+                noise(submaps.rng));
   }
-  return pieces;
+  return submaps;
 }
 
 TEST(Ways, HoldAllThatAgreesWithTheSurestThatIsLeft) {
   std::size_t num_ways = 0;
   std::size_t num_shared = 0;
   for (unsigned seed = 1; seed <= 25; ++seed) {
-    const TwoPieces pieces = doubtful_pieces(seed);
+    const TwoPieces submaps = doubtful_submaps(seed);
     std::set<std::size_t> left;
-    for (std::size_t k = 0; k < pieces.joints.size(); ++k) left.insert(k);
-    for (const SubmapAlignment& way : pieces.ways()) {
+    for (std::size_t k = 0; k < submaps.joints.size(); ++k) left.insert(k);
+    for (const SubmapAlignment& way : submaps.ways()) {
       ASSERT_FALSE(left.empty()) << seed;
       const std::size_t surest = *std::max_element(left.begin(), left.end(), [&](std::size_t i, std::size_t j) {
-        return pieces.joints[i].worth < pieces.joints[j].worth;
+        return submaps.joints[i].worth < submaps.joints[j].worth;
       });
       Nodes expected;
-      for (std::size_t k = 0; k < pieces.joints.size(); ++k) {
-        if (!says_the_same(pieces, surest, k)) continue;
+      for (std::size_t k = 0; k < submaps.joints.size(); ++k) {
+        if (!says_the_same(submaps, surest, k)) continue;
         expected.push_back(k);
         num_shared += left.erase(k) == 0 ? 1U : 0U;
       }
       EXPECT_THAT(way.joints, testing::UnorderedElementsAreArray(expected)) << seed;
-      EXPECT_NEAR(way.gain, strength_of(pieces, way.joints) + pieces.joints[surest].noise, 1e-9) << seed;
+      EXPECT_NEAR(way.gain, strength_of(submaps, way.joints) + submaps.joints[surest].noise, 1e-9) << seed;
       ++num_ways;
     }
     EXPECT_THAT(left, IsEmpty()) << "each joint is part of a way";
@@ -246,17 +248,17 @@ TEST(Ways, HoldAllThatAgreesWithTheSurestThatIsLeft) {
 }
 
 /// Squared errors of places, and of directions as if of points 2 m away.
-double cost_of(const TwoPieces& pieces, const Nodes& joints, const Pose2& f_from_g) {
+double cost_of(const TwoPieces& submaps, const Nodes& joints, const Pose2& f_from_g) {
   double cost = 0.0;
   for (const std::size_t joint : joints) {
-    const PoseConstraint c = pieces.from_f(joint);
-    const Pose2 expected = f_from_g * pieces.pose[c.b];
-    const Pose2 said = pieces.pose[c.a] * c.a_from_b;
+    const PoseConstraint c = submaps.from_f(joint);
+    const Pose2 expected = f_from_g * submaps.pose[c.b];
+    const Pose2 said = submaps.pose[c.a] * c.a_from_b;
     for (const Point2& point : {Point2(0.0, 0.0), Point2(2.0, 0.0), Point2(-2.0, 0.0)}) {
       const double share = point.x() == 0.0 ? 1.0 : 0.5;
       const Point2 turned = rotate(point, said.theta_rad) - rotate(point, expected.theta_rad);
       const Point2 off = point.x() == 0.0 ? Point2(said.translation() - expected.translation()) : turned;
-      cost += share * (pieces.joints[joint].worth + 0.1) * off.squaredNorm();
+      cost += share * (submaps.joints[joint].worth + 0.1) * off.squaredNorm();
     }
   }
   return cost;
@@ -265,26 +267,26 @@ double cost_of(const TwoPieces& pieces, const Nodes& joints, const Pose2& f_from
 TEST(Ways, LieWhereTheirJointsHaveTheLeastErrors) {
   std::mt19937 rng(9);
   for (unsigned seed = 1; seed <= 25; ++seed) {
-    const TwoPieces pieces = doubtful_pieces(seed);
-    for (const SubmapAlignment& way : pieces.ways()) {
-      const double least = cost_of(pieces, way.joints, way.f_from_g);
+    const TwoPieces submaps = doubtful_submaps(seed);
+    for (const SubmapAlignment& way : submaps.ways()) {
+      const double least = cost_of(submaps, way.joints, way.f_from_g);
       for (int k = 0; k < 30; ++k) {
         const double reach = std::pow(10.0, -1 - k % 4);
         const Pose2 moved = way.f_from_g * test::random_pose(rng, reach, reach);
-        EXPECT_LE(least, cost_of(pieces, way.joints, moved) + 1e-9) << seed;
+        EXPECT_LE(least, cost_of(submaps, way.joints, moved) + 1e-9) << seed;
       }
     }
   }
 }
 
 TEST(Holds, WhatIsNearEnoughToThePiece) {
-  TwoPieces pieces(4);
-  const std::size_t a = pieces.of_f[2];
-  const std::size_t b = pieces.of_f[7];
+  TwoPieces submaps(4);
+  const std::size_t a = submaps.of_f[2];
+  const std::size_t b = submaps.of_f[7];
   const auto holds = [&](const Pose2& off) {
     const SubmapCandidate joint{
-        {a, b, inverse(pieces.pose[a]) * pieces.pose[b] * off, Eigen::Matrix3d::Identity(), 0.0}, 1.0, 0};
-    return SubmapAlignments(pieces.joints, pieces.pose, pieces.piece).holds(joint);
+        {a, b, inverse(submaps.pose[a]) * submaps.pose[b] * off, Eigen::Matrix3d::Identity(), 0.0}, 1.0, 0};
+    return SubmapAlignments(submaps.joints, submaps.pose, submaps.submap).holds(joint);
   };
   EXPECT_TRUE(holds({}));
   EXPECT_TRUE(holds({0.0, 0.39, 0.0}));

@@ -23,17 +23,17 @@ const Pose2 kTurned{0.0, 0.0, kPi};
 /// A walk round the ring and a bit more, the links of which a test makes doubtful.
 struct Walk {
   explicit Walk(double drift_rad = 0.1 * kDegree, unsigned seed = 2)
-      : truth(test::ring_walk(kRingLap + 8, seed)), edges(test::drifting_links(truth, drift_rad)), right(edges) {}
+      : truth(test::ring_walk(kRingLap + 8, seed)), edges(test::drifting_edges(truth, drift_rad)), right(edges) {}
 
   /// A wrong alternative comes first; the right one is as good as never, or comes second.
-  void spoil(std::size_t link, const Pose2& wrong, bool keep_right = true) {
-    std::vector<EdgeChoices::Candidate>& candidates = edges[link].candidates;
+  void spoil(std::size_t edge, const Pose2& wrong, bool keep_right = true) {
+    std::vector<EdgeChoices::Candidate>& candidates = edges[edge].candidates;
     EdgeChoices::Candidate first = candidates.front();
     first.a_from_b = wrong;
     first.score = 1.0;
     if (!keep_right) candidates.clear();
     candidates.insert(candidates.begin(), first);
-    edges[link].probability = 0.5;
+    edges[edge].probability = 0.5;
   }
 
   /// As if the robot had turned round for one scan.
@@ -56,8 +56,8 @@ struct Walk {
   /// By first alternatives; what belongs to another log is far away.
   std::vector<Pose2> chain() const {
     std::vector<Pose2> poses{{}};
-    for (const EdgeChoices& link : edges) {
-      const Pose2 step = link.exists() ? link.candidates[0].a_from_b : Pose2{1e4, 0.0, 0.0};
+    for (const EdgeChoices& edge : edges) {
+      const Pose2 step = edge.exists() ? edge.candidates[0].a_from_b : Pose2{1e4, 0.0, 0.0};
       poses.push_back(poses.back() * step);
     }
     return poses;
@@ -118,9 +118,9 @@ TEST(AssembledMap, IsTheBestOfAllChoices) {
     Walk walk(0.05 * kDegree, seed);
     std::set<std::size_t> doubtful;
     while (doubtful.size() < 4) doubtful.insert(3 + rng() % (walk.edges.size() - 6));
-    for (const std::size_t link : doubtful) {
+    for (const std::size_t edge : doubtful) {
       const Pose2 wrong = Pose2{0.7, 0.0, 0.0} * test::random_pose(rng, 0.6, 2.0) * Pose2{0.0, 0.0, 40 * kDegree};
-      walk.spoil(link, walk.edges[link].candidates[0].a_from_b * wrong);
+      walk.spoil(edge, walk.edges[edge].candidates[0].a_from_b * wrong);
     }
     const std::vector<Pose2> best = best_of_all_choices(walk, {doubtful.begin(), doubtful.end()});
     expect_same_map(best, test::chained(walk.right));
@@ -190,7 +190,7 @@ TEST(AssembledMap, OfAVariantIsTheSameToTheBitForAnyNumberOfThreads) {
 /// Scans that tell nothing: the first variant goes by the alignments, others by chance.
 TEST(AssembledMap, DiffersBetweenVariantsWhereItIsDoubtful) {
   Walk walk;
-  for (auto& view : walk.views) view = std::make_shared<ScanView>(test::view_of(test::blind_position()));
+  for (auto& view : walk.views) view = std::make_shared<ScanView>(test::view_of(test::blind_scan()));
   walk.turn_node(20);
   expect_same_map(walk.assembled(), walk.chain());
   int as_the_chain = 0;

@@ -26,28 +26,28 @@ Submaps away_and_back(std::mt19937& random) {
 
 TEST(Submaps, JoinsTheLaterPieceWhole) {
   std::mt19937 random(1);
-  Submaps pieces = away_and_back(random);
-  const std::vector<Pose2> before = pieces.map_from_node();
-  const Pose2 within = pieces.step(2);
+  Submaps submaps = away_and_back(random);
+  const std::vector<Pose2> before = submaps.map_from_node();
+  const Pose2 within = submaps.step(2);
   const Pose2 a_from_b = any_pose(random);
-  pieces.join(1, a_from_b);
-  EXPECT_THAT(pieces.piece_of_node(), ElementsAre(0, 0, 0, 0, 0, 0));
-  EXPECT_THAT(pieces.step(1), test::IsNearPose(a_from_b, 1e-9, 1e-9));
-  EXPECT_THAT(pieces.step(2), test::IsNearPose(within, 1e-9, 1e-9)) << "no piece bends";
-  EXPECT_THAT(pieces.map_from_node()[5], test::IsNearPose(before[5], 1e-9, 1e-9));
+  submaps.join(1, a_from_b);
+  EXPECT_THAT(submaps.submap_of_node(), ElementsAre(0, 0, 0, 0, 0, 0));
+  EXPECT_THAT(submaps.step(1), test::IsNearPose(a_from_b, 1e-9, 1e-9));
+  EXPECT_THAT(submaps.step(2), test::IsNearPose(within, 1e-9, 1e-9)) << "no piece bends";
+  EXPECT_THAT(submaps.map_from_node()[5], test::IsNearPose(before[5], 1e-9, 1e-9));
 }
 
 TEST(Submaps, TellsWhichLinksJoinTheSameTwo) {
   std::mt19937 random(2);
-  Submaps pieces = away_and_back(random);
-  EXPECT_TRUE(pieces.are_parallel(1, 3));
-  EXPECT_TRUE(pieces.are_parallel(3, 1));
-  EXPECT_FALSE(pieces.are_parallel(0, 4)) << "both are within a piece";
-  EXPECT_FALSE(pieces.are_parallel(1, 2));
-  EXPECT_FALSE(pieces.are_parallel(2, 1));
-  pieces.join(1, {});
-  EXPECT_FALSE(pieces.are_parallel(1, 3)) << "nothing is left to join";
-  EXPECT_TRUE(pieces.is_joined(3));
+  Submaps submaps = away_and_back(random);
+  EXPECT_TRUE(submaps.are_parallel(1, 3));
+  EXPECT_TRUE(submaps.are_parallel(3, 1));
+  EXPECT_FALSE(submaps.are_parallel(0, 4)) << "both are within a piece";
+  EXPECT_FALSE(submaps.are_parallel(1, 2));
+  EXPECT_FALSE(submaps.are_parallel(2, 1));
+  submaps.join(1, {});
+  EXPECT_FALSE(submaps.are_parallel(1, 3)) << "nothing is left to join";
+  EXPECT_TRUE(submaps.is_joined(3));
 }
 
 /// In either direction: by the way there, or by the way back, the pieces come to lie alike.
@@ -56,10 +56,10 @@ TEST(Submaps, CarriesWhatOneLinkSaysToTheOther) {
     std::mt19937 random(seed);
     const Submaps apart = away_and_back(random);
     const Pose2 a_from_b = any_pose(random);
-    for (const auto& [link, parallel] : {std::pair<std::size_t, std::size_t>{1, 3}, {3, 1}}) {
+    for (const auto& [edge, parallel] : {std::pair<std::size_t, std::size_t>{1, 3}, {3, 1}}) {
       Submaps joined = apart;
       joined.join(parallel, a_from_b);
-      EXPECT_THAT(apart.carried_to(link, parallel, a_from_b), test::IsNearPose(joined.step(link), 1e-9, 1e-9));
+      EXPECT_THAT(apart.carried_to(edge, parallel, a_from_b), test::IsNearPose(joined.step(edge), 1e-9, 1e-9));
     }
   }
 }

@@ -14,9 +14,9 @@ using test::HasSameBits;
 /// Stops along a side of the ring and round its corner, whose sub-scans are turned by up to 2 degrees.
 struct Survey {
   Survey() {
-    for (const Scan& position : stops.log.scans) {
+    for (const Scan& scan : stops.log.scans) {
       views.emplace_back();
-      for (const Sweep& sweep : position.sweeps) {
+      for (const Sweep& sweep : scan.sweeps) {
         Scan alone;
         alone.sweeps = {sweep};
         views.back().push_back(std::make_shared<ScanView>(test::view_of(alone)));
@@ -35,7 +35,7 @@ struct Survey {
   std::vector<std::size_t> parts = std::vector<std::size_t>(8, 0);
 };
 
-TEST(RefineSubScans, FindsHowEachIsTurned) {
+TEST(RefineSweeps, FindsHowEachIsTurned) {
   const Survey survey;
   const std::vector<std::vector<Pose2>> nominal(8, std::vector<Pose2>(test::kTurns));
   const double before_rad = test::heading_rms_rad(survey.stops, survey.start, nominal);
@@ -44,7 +44,7 @@ TEST(RefineSubScans, FindsHowEachIsTurned) {
   EXPECT_LT(test::heading_rms_rad(survey.stops, found.map_from_node, found.node_from_sweep), 0.35 * before_rad);
 }
 
-TEST(RefineSubScans, PutsAPositionWhereItsSubScansSayInTheMean) {
+TEST(RefineSweeps, PutsAPositionWhereItsSubScansSayInTheMean) {
   const Survey survey;
   const SweepPoses found = survey.refined();
   EXPECT_THAT(found.map_from_node[0], HasSameBits(survey.start[0])) << "the first stays";
@@ -56,7 +56,7 @@ TEST(RefineSubScans, PutsAPositionWhereItsSubScansSayInTheMean) {
 }
 
 /// Poses that are off by centimetres and a degree end where those end that were right.
-TEST(RefineSubScans, DoesNotDependOnWhereItStarts) {
+TEST(RefineSweeps, DoesNotDependOnWhereItStarts) {
   Survey survey;
   const SweepPoses wanted = survey.refined();
   std::mt19937 rng(5);
@@ -69,7 +69,7 @@ TEST(RefineSubScans, DoesNotDependOnWhereItStarts) {
   }
 }
 
-TEST(RefineSubScans, WithoutARoundLeavesAllAsItIs) {
+TEST(RefineSweeps, WithoutARoundLeavesAllAsItIs) {
   const Survey survey;
   SweepRefinementOptions options;
   options.rounds = 0;
@@ -80,7 +80,7 @@ TEST(RefineSubScans, WithoutARoundLeavesAllAsItIs) {
   }
 }
 
-TEST(RefineSubScans, DoesNotAlignPiecesThatNothingJoins) {
+TEST(RefineSweeps, DoesNotAlignPiecesThatNothingJoins) {
   Survey survey;
   survey.parts = {0, 0, 0, 0, 4, 4, 4, 4};
   const Pose2 aside{0.10, -0.05, 1 * kDegree};
@@ -90,7 +90,7 @@ TEST(RefineSubScans, DoesNotAlignPiecesThatNothingJoins) {
   EXPECT_THAT(found.map_from_node[0], HasSameBits(survey.start[0]));
 }
 
-TEST(RefineSubScans, IsTheSameToTheBitForAnyNumberOfThreads) {
+TEST(RefineSweeps, IsTheSameToTheBitForAnyNumberOfThreads) {
   const Survey survey;
   SweepRefinementOptions options;
   options.rounds = 2;

@@ -49,11 +49,11 @@ TEST_F(Carmen, FlaserAnglesFollowFromTheCount) {
     ASSERT_EQ(log.scans.size(), 1U);
     EXPECT_EQ(log.scans[0].timestamp_s, 12.25);
     ASSERT_EQ(log.scans[0].sweeps.size(), 1U);
-    const Sweep& scan = log.scans[0].sweeps[0];
-    EXPECT_EQ(scan.ranges_m.size(), static_cast<std::size_t>(count));
-    EXPECT_DOUBLE_EQ(scan.first_angle_rad, -90 * kDegree);
-    EXPECT_DOUBLE_EQ(scan.angle_step_rad, step_deg * kDegree);
-    EXPECT_EQ(scan.sensor_label, "FLASER");
+    const Sweep& sweep = log.scans[0].sweeps[0];
+    EXPECT_EQ(sweep.ranges_m.size(), static_cast<std::size_t>(count));
+    EXPECT_DOUBLE_EQ(sweep.first_angle_rad, -90 * kDegree);
+    EXPECT_DOUBLE_EQ(sweep.angle_step_rad, step_deg * kDegree);
+    EXPECT_EQ(sweep.sensor_label, "FLASER");
   }
 }
 
@@ -61,21 +61,21 @@ TEST_F(Carmen, OtherCountsNeedAFieldOfView) {
   EXPECT_THAT(error("PARAM x 1\n" + flaser(100)), testing::AllOf(HasSubstr("a.log:2:"), HasSubstr("--fov-deg")));
   LogReadOptions options;
   options.fov_rad = 198 * kDegree;
-  const Sweep scan = read(flaser(100), options).scans[0].sweeps[0];
-  EXPECT_DOUBLE_EQ(scan.first_angle_rad, -99 * kDegree);
-  EXPECT_DOUBLE_EQ(scan.angle_step_rad, 2 * kDegree);
+  const Sweep sweep = read(flaser(100), options).scans[0].sweeps[0];
+  EXPECT_DOUBLE_EQ(sweep.first_angle_rad, -99 * kDegree);
+  EXPECT_DOUBLE_EQ(sweep.angle_step_rad, 2 * kDegree);
   EXPECT_DOUBLE_EQ(read(flaser(181), options).scans[0].sweeps[0].angle_step_rad, 1.1 * kDegree);
 }
 
 TEST_F(Carmen, RobotLaserHasItsOwnAnglesAndLimits) {
   const Log log = read("ROBOTLASER1 0 -1.0 2.0 0.5 7.5 0.1 0 5 1 2 3 7.5 8 2 10 20 l l l r r r 0 0 0 0 0 33.5 h 1\n");
   EXPECT_EQ(log.scans.at(0).timestamp_s, 33.5);
-  const Sweep& scan = log.scans[0].sweeps.at(0);
-  EXPECT_EQ(scan.first_angle_rad, -1.0);
-  EXPECT_EQ(scan.angle_step_rad, 0.5);
-  EXPECT_EQ(scan.max_range_m, 7.5);
-  EXPECT_THAT(scan.ranges_m, ElementsAre(1.0F, 2.0F, 3.0F, 7.5F, 8.0F));
-  EXPECT_EQ(returns_in_robot(scan, {}).size(), 3U);
+  const Sweep& sweep = log.scans[0].sweeps.at(0);
+  EXPECT_EQ(sweep.first_angle_rad, -1.0);
+  EXPECT_EQ(sweep.angle_step_rad, 0.5);
+  EXPECT_EQ(sweep.max_range_m, 7.5);
+  EXPECT_THAT(sweep.ranges_m, ElementsAre(1.0F, 2.0F, 3.0F, 7.5F, 8.0F));
+  EXPECT_EQ(returns_in_robot(sweep, {}).size(), 3U);
 }
 
 TEST_F(Carmen, PosesAreNotEvenNumbers) {
@@ -107,10 +107,10 @@ TEST_F(Carmen, ReadingsThatAreNoDistancesAreNoReturns) {
   LogReadOptions options;
   options.fov_rad = 1.0;
   const Log log = read("FLASER 6 nan inf -1 0 2 -inf 0 0 0 0 0 0 1 h 1\n", options);
-  const Sweep& scan = log.scans.at(0).sweeps.at(0);
-  EXPECT_EQ(returns_in_robot(scan, {}).size(), 1U);
-  for (const std::size_t beam : {0U, 1U}) EXPECT_TRUE(std::isnan(scan.ranges_m[beam])) << beam;
-  for (const std::size_t beam : {2U, 3U, 5U}) EXPECT_EQ(scan.ranges_m[beam], 0.0F) << "says nothing: " << beam;
+  const Sweep& sweep = log.scans.at(0).sweeps.at(0);
+  EXPECT_EQ(returns_in_robot(sweep, {}).size(), 1U);
+  for (const std::size_t beam : {0U, 1U}) EXPECT_TRUE(std::isnan(sweep.ranges_m[beam])) << beam;
+  for (const std::size_t beam : {2U, 3U, 5U}) EXPECT_EQ(sweep.ranges_m[beam], 0.0F) << "says nothing: " << beam;
 }
 
 TEST_F(Carmen, ALineWithoutReadingsIsAnEmptyScan) {
@@ -120,10 +120,10 @@ TEST_F(Carmen, ALineWithoutReadingsIsAnEmptyScan) {
 }
 
 TEST_F(Carmen, SickErrorCodesAreNoReturns) {
-  const Sweep scan =
+  const Sweep sweep =
       read("FLASER 180 81.91 80.5" + times(178, "1.5") + " 0 0 0 0 0 0 1 h 1\n").scans.at(0).sweeps.at(0);
-  EXPECT_FLOAT_EQ(static_cast<float>(scan.max_range_m), 81.91F);
-  EXPECT_EQ(returns_in_robot(scan, {}).size(), 179U);
+  EXPECT_FLOAT_EQ(static_cast<float>(sweep.max_range_m), 81.91F);
+  EXPECT_EQ(returns_in_robot(sweep, {}).size(), 179U);
 }
 
 TEST_F(Carmen, SickCodesInMillimetresAreNoReturns) {

@@ -21,34 +21,34 @@ Log awkward_log() {
   Log log;
   log.format = "nist";
   for (int i = 0; i < 3; ++i) {
-    Scan position;
-    position.timestamp_s = 1137834225.7133856 + 0.125 * i;
+    Scan scan;
+    scan.timestamp_s = 1137834225.7133856 + 0.125 * i;
     for (int turn = 0; turn < 4; ++turn) {
-      Sweep scan = make_scan(101, -50 * kDegree, kDegree);
-      scan.nominal_heading_rad = wrap_angle(turn * 90 * kDegree);
-      scan.robot_from_sensor = {0.1, -0.05, 0.3, 0.2, 0.0, 0.0};
-      position.sweeps.push_back(scan);
+      Sweep sweep = make_scan(101, -50 * kDegree, kDegree);
+      sweep.nominal_heading_rad = wrap_angle(turn * 90 * kDegree);
+      sweep.robot_from_sensor = {0.1, -0.05, 0.3, 0.2, 0.0, 0.0};
+      scan.sweeps.push_back(sweep);
     }
-    position.sweeps[1].sensor_label = "second laser #2";
-    position.sweeps[1].first_angle_rad = -10 * kDegree;
-    position.sweeps[1].min_range_m = 1.105;
-    position.sweeps[2].angle_step_rad = -0.7 * kDegree;
-    position.sweeps[2].first_angle_rad = 80 * kDegree;
-    position.sweeps[2].robot_from_sensor.roll_rad = kPi;
-    position.sweeps[3].robot_from_sensor.pitch_rad = 10 * kDegree;
-    position.sweeps[3].robot_from_sensor.roll_rad = -5 * kDegree;
-    position.sweeps[3].max_range_m = 0.0;
-    log.scans.push_back(position);
+    scan.sweeps[1].sensor_label = "second laser #2";
+    scan.sweeps[1].first_angle_rad = -10 * kDegree;
+    scan.sweeps[1].min_range_m = 1.105;
+    scan.sweeps[2].angle_step_rad = -0.7 * kDegree;
+    scan.sweeps[2].first_angle_rad = 80 * kDegree;
+    scan.sweeps[2].robot_from_sensor.roll_rad = kPi;
+    scan.sweeps[3].robot_from_sensor.pitch_rad = 10 * kDegree;
+    scan.sweeps[3].robot_from_sensor.roll_rad = -5 * kDegree;
+    scan.sweeps[3].max_range_m = 0.0;
+    log.scans.push_back(scan);
   }
   return log;
 }
 
 Log flaser_log() {
   Log log;
-  Scan position;
-  position.timestamp_s = 12.5;
-  position.sweeps.push_back(make_scan(181, -90 * kDegree, kDegree));
-  log.scans.push_back(position);
+  Scan scan;
+  scan.timestamp_s = 12.5;
+  scan.sweeps.push_back(make_scan(181, -90 * kDegree, kDegree));
+  log.scans.push_back(scan);
   return log;
 }
 

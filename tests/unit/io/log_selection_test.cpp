@@ -13,7 +13,7 @@ std::vector<double> selected(int first, int skip, int every) {
   for (int i = 0; i < 10; ++i) log.scans.push_back({static_cast<double>(i), {}, {}, {}});
   SelectionOptions options{first, skip, every};
   std::vector<double> left;
-  for (const Scan& position : select_positions(log, options).scans) left.push_back(position.timestamp_s);
+  for (const Scan& scan : select_scans(log, options).scans) left.push_back(scan.timestamp_s);
   for (std::size_t i = 0; i < left.size(); ++i) {
     EXPECT_EQ(static_cast<double>(index_in_whole_log(i, options)), left[i]);
   }

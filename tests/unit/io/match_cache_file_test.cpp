@@ -74,7 +74,7 @@ MATCHER_P(HasSameBitsAs, expected, "") {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-class AlignmentStoreFileTest : public ::testing::Test {
+class MatchCacheFileTest : public ::testing::Test {
  protected:
   MatchCacheFile opened(StateOpening opening) const { return {path_, opening, log_, options_}; }
 
@@ -102,7 +102,7 @@ class AlignmentStoreFileTest : public ::testing::Test {
   MappingOptions options_;
 };
 
-TEST_F(AlignmentStoreFileTest, GivesBackEveryBitInTheSameRunAndInTheNext) {
+TEST_F(MatchCacheFileTest, GivesBackEveryBitInTheSameRunAndInTheNext) {
   const std::vector<MatchCandidate> kept{candidate(1.5), candidate(2.5)};
   {
     MatchCacheFile state = opened(StateOpening::kCreate);
@@ -121,7 +121,7 @@ TEST_F(AlignmentStoreFileTest, GivesBackEveryBitInTheSameRunAndInTheNext) {
   EXPECT_THAT((*found)[1], HasSameBitsAs(kept[1]));
 }
 
-TEST_F(AlignmentStoreFileTest, TellsDirectionsAndSearchesApart) {
+TEST_F(MatchCacheFileTest, TellsDirectionsAndSearchesApart) {
   MatchCacheFile state = opened(StateOpening::kCreate);
   state.keep({1, 2, SearchKind::kFull}, {});
   EXPECT_TRUE(state.find({1, 2, SearchKind::kFull}));
@@ -130,14 +130,14 @@ TEST_F(AlignmentStoreFileTest, TellsDirectionsAndSearchesApart) {
   EXPECT_FALSE(state.find({2, 1, SearchKind::kFull}));
 }
 
-TEST_F(AlignmentStoreFileTest, KnowsThatNothingWasFound) {
+TEST_F(MatchCacheFileTest, KnowsThatNothingWasFound) {
   opened(StateOpening::kCreate).keep({1, 2}, {});
   const auto found = opened(StateOpening::kResume).find({1, 2});
   ASSERT_TRUE(found);
   EXPECT_THAT(*found, IsEmpty());
 }
 
-TEST_F(AlignmentStoreFileTest, KeepsEachAlignmentOnce) {
+TEST_F(MatchCacheFileTest, KeepsEachAlignmentOnce) {
   MatchCacheFile state = opened(StateOpening::kCreate);
   state.keep({0, 1}, {candidate(1)});
   const auto size = std::filesystem::file_size(path_);
@@ -145,14 +145,14 @@ TEST_F(AlignmentStoreFileTest, KeepsEachAlignmentOnce) {
   EXPECT_EQ(std::filesystem::file_size(path_), size);
 }
 
-TEST_F(AlignmentStoreFileTest, WritesAtOnce) {
+TEST_F(MatchCacheFileTest, WritesAtOnce) {
   MatchCacheFile state = opened(StateOpening::kCreate);
   const auto size = std::filesystem::file_size(path_);
   state.keep({0, 1}, {candidate(1)});
   EXPECT_EQ(std::filesystem::file_size(path_), size + kRecordBytes);
 }
 
-TEST_F(AlignmentStoreFileTest, TakesManyThreads) {
+TEST_F(MatchCacheFileTest, TakesManyThreads) {
   log_ = log_of(400);
   const auto of = [](std::size_t i) { return candidate(1.0 + 0.01 * static_cast<double>(i)); };
   {
@@ -169,7 +169,7 @@ TEST_F(AlignmentStoreFileTest, TakesManyThreads) {
   }
 }
 
-TEST_F(AlignmentStoreFileTest, CutAnywhereKeepsWhatIsWholeAndGoesOn) {
+TEST_F(MatchCacheFileTest, CutAnywhereKeepsWhatIsWholeAndGoesOn) {
   make_three();
   const std::string whole = test::read_file(path_);
   const std::size_t header = whole.size() - 3 * kRecordBytes;
@@ -187,7 +187,7 @@ TEST_F(AlignmentStoreFileTest, CutAnywhereKeepsWhatIsWholeAndGoesOn) {
   }
 }
 
-TEST_F(AlignmentStoreFileTest, AFlippedBitAnywhereCostsWhatComesAfterIt) {
+TEST_F(MatchCacheFileTest, AFlippedBitAnywhereCostsWhatComesAfterIt) {
   make_three();
   const std::string whole = test::read_file(path_);
   const std::size_t header = whole.size() - 3 * kRecordBytes;
@@ -201,7 +201,7 @@ TEST_F(AlignmentStoreFileTest, AFlippedBitAnywhereCostsWhatComesAfterIt) {
   }
 }
 
-TEST_F(AlignmentStoreFileTest, AFlippedBitInTheHeaderIsAnError) {
+TEST_F(MatchCacheFileTest, AFlippedBitInTheHeaderIsAnError) {
   make_three();
   const std::string whole = test::read_file(path_);
   for (std::size_t at = 0; at < whole.size() - 3 * kRecordBytes; ++at) {
@@ -212,7 +212,7 @@ TEST_F(AlignmentStoreFileTest, AFlippedBitInTheHeaderIsAnError) {
   }
 }
 
-TEST_F(AlignmentStoreFileTest, ATailOfZerosIsCutOff) {
+TEST_F(MatchCacheFileTest, ATailOfZerosIsCutOff) {
   make_three();
   folder_.write("run.state", test::read_file(path_) + std::string(4096, '\0'));
   const MatchCacheFile state = opened(StateOpening::kResume);
@@ -220,7 +220,7 @@ TEST_F(AlignmentStoreFileTest, ATailOfZerosIsCutOff) {
   EXPECT_THAT(state.warning(), HasSubstr("the 3 alignments before it are used"));
 }
 
-TEST_F(AlignmentStoreFileTest, NamesWhatDiffers) {
+TEST_F(MatchCacheFileTest, NamesWhatDiffers) {
   make_three();
   const Log log = log_;
   log_.scans.pop_back();
@@ -239,7 +239,7 @@ TEST_F(AlignmentStoreFileTest, NamesWhatDiffers) {
   EXPECT_THAT(why_not_resumed(), HasSubstr("--"));
 }
 
-TEST_F(AlignmentStoreFileTest, AskedForWithOtherOptionsThatDoNotMatterIsTheSame) {
+TEST_F(MatchCacheFileTest, AskedForWithOtherOptionsThatDoNotMatterIsTheSame) {
   make_three();
   options_.run.threads = 7;
   options_.robust.loops.close_loops = false;
@@ -249,7 +249,7 @@ TEST_F(AlignmentStoreFileTest, AskedForWithOtherOptionsThatDoNotMatterIsTheSame)
   EXPECT_EQ(opened(StateOpening::kResume).num_resumed(), 3U);
 }
 
-TEST_F(AlignmentStoreFileTest, IsNotWhateverFileThereIs) {
+TEST_F(MatchCacheFileTest, IsNotWhateverFileThereIs) {
   EXPECT_THROW(opened(StateOpening::kResume), InputError);
   EXPECT_FALSE(std::filesystem::exists(path_));
   for (const std::string& content : {std::string("x"), std::string("FLASER 180 1.0"), std::string(100000, 'y')}) {
@@ -258,7 +258,7 @@ TEST_F(AlignmentStoreFileTest, IsNotWhateverFileThereIs) {
   }
 }
 
-TEST_F(AlignmentStoreFileTest, OfAFormatToComeIsAnError) {
+TEST_F(MatchCacheFileTest, OfAFormatToComeIsAnError) {
   make_three();
   std::string content = test::read_file(path_);
   content[12] = 9;
@@ -266,7 +266,7 @@ TEST_F(AlignmentStoreFileTest, OfAFormatToComeIsAnError) {
   EXPECT_THAT(why_not_resumed(), HasSubstr("has format 9, this shapemap reads 1"));
 }
 
-TEST_F(AlignmentStoreFileTest, IsReplacedOnlyWhenAskedFor) {
+TEST_F(MatchCacheFileTest, IsReplacedOnlyWhenAskedFor) {
   make_three();
   const std::string before = test::read_file(path_);
   EXPECT_THROW(opened(StateOpening::kCreate), OutputError);
@@ -275,13 +275,13 @@ TEST_F(AlignmentStoreFileTest, IsReplacedOnlyWhenAskedFor) {
   EXPECT_EQ(opened(StateOpening::kResume).num_resumed(), 0U);
 }
 
-TEST_F(AlignmentStoreFileTest, BelongsToOneRunAtATime) {
+TEST_F(MatchCacheFileTest, BelongsToOneRunAtATime) {
   const MatchCacheFile first = opened(StateOpening::kCreate);
   EXPECT_THROW(opened(StateOpening::kResume), OutputError);
   EXPECT_THROW(opened(StateOpening::kReplace), OutputError);
 }
 
-TEST_F(AlignmentStoreFileTest, NeedsAFile) {
+TEST_F(MatchCacheFileTest, NeedsAFile) {
   path_ = "/dev/full";
   EXPECT_THROW(opened(StateOpening::kReplace), OutputError);
   path_ = folder_.path("no/run.state");

@@ -41,16 +41,16 @@ Log walk(int num_scans = 3, double step_m = 0.2) {
   for (int i = 0; i < num_scans; ++i) {
     log.scans.push_back(test::scan_of(test::uneven_room(), {step_m * i, 0.05 * i, 0.05 * i}, scanner));
     log.scans.back().timestamp_s = 100.0 + i;
-    Sweep& scan = log.scans.back().sweeps.front();
-    scan.sensor_label = "laser";
-    scan.robot_from_sensor = {0.1, -0.1, 0.3, 0.02, 0.01, -0.01};
+    Sweep& sweep = log.scans.back().sweeps.front();
+    sweep.sensor_label = "laser";
+    sweep.robot_from_sensor = {0.1, -0.1, 0.3, 0.02, 0.01, -0.01};
   }
   return log;
 }
 
-std::string readings(const Sweep& scan) {
+std::string readings(const Sweep& sweep) {
   std::string text;
-  for (const float range_m : scan.ranges_m) text += " " + std::to_string(range_m);
+  for (const float range_m : sweep.ranges_m) text += " " + std::to_string(range_m);
   return text;
 }
 
@@ -58,12 +58,12 @@ std::string readings(const Sweep& scan) {
 std::string flaser_lines() {
   Log log = walk();
   std::string text = "PARAM robot_front_laser_max 20.0 host 0\n";
-  for (Scan& position : log.scans) {
-    Sweep scan = position.sweeps.front();
+  for (Scan& scan : log.scans) {
+    Sweep sweep = scan.sweeps.front();
     std::vector<float> ranges_m;
-    for (const float range_m : scan.ranges_m) ranges_m.insert(ranges_m.end(), 3, range_m);
-    scan.ranges_m = ranges_m;
-    text += "FLASER 180" + readings(scan) + " 0 0 0 0 0 0 " + std::to_string(position.timestamp_s) + " host 0\n";
+    for (const float range_m : sweep.ranges_m) ranges_m.insert(ranges_m.end(), 3, range_m);
+    sweep.ranges_m = ranges_m;
+    text += "FLASER 180" + readings(sweep) + " 0 0 0 0 0 0 " + std::to_string(scan.timestamp_s) + " host 0\n";
   }
   return text;
 }
@@ -75,14 +75,14 @@ Log rolling_walk() {
   Log log = walk(5, 0.05);
   for (std::size_t i = 0; i < log.scans.size(); ++i) {
     log.scans[i].timestamp_s = 100.0 + kPeriod_s * static_cast<double>(i);
-    Sweep& scan = log.scans[i].sweeps.front();
-    scan.beam_time_step_s = kPeriod_s / 120;
-    scan.start_s = 0.01;
+    Sweep& sweep = log.scans[i].sweeps.front();
+    sweep.beam_time_step_s = kPeriod_s / 120;
+    sweep.start_s = 0.01;
     if (i != 2) continue;
     std::vector<double> angles_rad;
-    for (std::size_t k = 0; k < scan.ranges_m.size(); ++k) angles_rad.push_back(scan.beam_angle_rad(k));
-    set_beam_angles(scan, angles_rad);
-    scan.intensities.assign(scan.ranges_m.size(), 7.0F);
+    for (std::size_t k = 0; k < sweep.ranges_m.size(); ++k) angles_rad.push_back(sweep.beam_angle_rad(k));
+    set_beam_angles(sweep, angles_rad);
+    sweep.intensities.assign(sweep.ranges_m.size(), 7.0F);
   }
   return log;
 }
@@ -96,7 +96,7 @@ struct Sample {
 std::vector<Sample> samples(const TempFolder& folder) {
   const Log log = walk();
   std::vector<Sample> all{{"flaser", flaser_lines()}, {"bare", ""}};
-  for (const Scan& position : log.scans) all.back().content += readings(position.sweeps.front()) + "\n";
+  for (const Scan& scan : log.scans) all.back().content += readings(scan.sweeps.front()) + "\n";
   for (const auto& [name, format] :
        {std::pair{"nist", LogFormat::kNist}, std::pair{"robotlaser", LogFormat::kCarmen}}) {
     write_log(log, folder.path(name), format);
@@ -267,7 +267,7 @@ class MutatedStates : public testing::Test {
     std::size_t record;
     std::size_t numbers;
   };
-  static std::vector<Place> hypotheses_of(const std::string& content) {
+  static std::vector<Place> candidates_of(const std::string& content) {
     std::vector<Place> places;
     std::uint32_t text_size = u32_at(content, 16);
     for (std::size_t at = 20 + text_size + 4; at + kRecordHeadBytes < content.size();) {
@@ -295,7 +295,7 @@ TEST_F(MutatedStates, AreMappedWithWhateverTheySay) {
   map_with(StateOpening::kCreate, num_whole);
   const std::string whole = test::read_file(path_);
   map_with(StateOpening::kResume, num_whole);
-  const std::vector<Place> places = hypotheses_of(whole);
+  const std::vector<Place> places = candidates_of(whole);
   ASSERT_GT(num_whole, 1U);
   ASSERT_GT(places.size(), num_whole);
   Watch watch;

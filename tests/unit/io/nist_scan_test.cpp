@@ -33,16 +33,16 @@ TEST_F(NistScan, AScanHasItsOwnBeamsAnglesAndLimits) {
       "position 2\nscan l heading 0 ranges\n"
       "position 3\nscan l heading 0 max_range 0 ranges 4 5 6 7\n");
   ASSERT_EQ(log.scans.size(), 4U);
-  const auto scan = [&](std::size_t i) { return log.scans[i].sweeps.at(0); };
-  EXPECT_EQ(scan(0).ranges_m.size(), 3U);
-  EXPECT_EQ(scan(0).max_range_m, 10.0);
-  EXPECT_DOUBLE_EQ(scan(1).first_angle_rad, -45 * kDegree);
-  EXPECT_DOUBLE_EQ(scan(1).angle_step_rad, 45 * kDegree);
-  EXPECT_EQ(scan(1).max_range_m, 0.0) << "not known";
-  EXPECT_EQ(scan(1).min_range_m, 0.0);
-  EXPECT_THAT(scan(2).ranges_m, IsEmpty());
-  EXPECT_DOUBLE_EQ(scan(3).first_angle_rad, -90 * kDegree) << "what a scan says holds for no other";
-  EXPECT_EQ(scan(3).max_range_m, 0.0);
+  const auto sweep = [&](std::size_t i) { return log.scans[i].sweeps.at(0); };
+  EXPECT_EQ(sweep(0).ranges_m.size(), 3U);
+  EXPECT_EQ(sweep(0).max_range_m, 10.0);
+  EXPECT_DOUBLE_EQ(sweep(1).first_angle_rad, -45 * kDegree);
+  EXPECT_DOUBLE_EQ(sweep(1).angle_step_rad, 45 * kDegree);
+  EXPECT_EQ(sweep(1).max_range_m, 0.0) << "not known";
+  EXPECT_EQ(sweep(1).min_range_m, 0.0);
+  EXPECT_THAT(sweep(2).ranges_m, IsEmpty());
+  EXPECT_DOUBLE_EQ(sweep(3).first_angle_rad, -90 * kDegree) << "what a scan says holds for no other";
+  EXPECT_EQ(sweep(3).max_range_m, 0.0);
 }
 
 TEST_F(NistScan, BeamsHaveAnglesTimesAndIntensitiesOfTheirOwn) {
@@ -102,17 +102,17 @@ TEST_F(NistScan, FaultsAreNamedWithTheirLine) {
 TEST_F(NistScan, WhatIsWrittenReadsBackToTheSameBits) {
   Log log;
   for (int i = 0; i < 3; ++i) {
-    Scan position;
-    position.timestamp_s = i;
-    Sweep scan = test::make_scan(static_cast<std::size_t>(5 + i), -0.1 - 0.01 * i, 0.013);
-    scan.beam_time_step_s = 1.0 / 7 / 360;
-    scan.start_s = 0.1 / 3 * i;
-    scan.nominal_heading_rad = 0.1 * i;
-    if (i == 1) set_beam_angles(scan, {0.1, 0.2 / 3, 0.3, 0.4, 0.5, 1.0 / 7});
-    if (i == 2) scan.intensities.assign(scan.ranges_m.size(), 0.1F);
-    if (i == 2) scan.beam_times_s.assign(scan.ranges_m.size(), 0.3F);
-    position.sweeps.push_back(std::move(scan));
-    log.scans.push_back(std::move(position));
+    Scan scan;
+    scan.timestamp_s = i;
+    Sweep sweep = test::make_scan(static_cast<std::size_t>(5 + i), -0.1 - 0.01 * i, 0.013);
+    sweep.beam_time_step_s = 1.0 / 7 / 360;
+    sweep.start_s = 0.1 / 3 * i;
+    sweep.nominal_heading_rad = 0.1 * i;
+    if (i == 1) set_beam_angles(sweep, {0.1, 0.2 / 3, 0.3, 0.4, 0.5, 1.0 / 7});
+    if (i == 2) sweep.intensities.assign(sweep.ranges_m.size(), 0.1F);
+    if (i == 2) sweep.beam_times_s.assign(sweep.ranges_m.size(), 0.3F);
+    scan.sweeps.push_back(std::move(sweep));
+    log.scans.push_back(std::move(scan));
   }
   write_log(log, folder_.path("b.nist"), LogFormat::kNist);
   const Log back = read_log(folder_.path("b.nist"));
@@ -140,10 +140,10 @@ TEST_F(NistScan, TheFirstVersionIsWrittenWhereItSuffices) {
   write_log(log, folder_.path("a.nist"), LogFormat::kNist);
   EXPECT_THAT(test::read_file(folder_.path("a.nist")), HasSubstr("shapemap-scans 1\nunits m deg\n"));
   for (const LogFormat format : {LogFormat::kCarmen, LogFormat::kRawlog}) EXPECT_EQ(what_is_lost(log, format), "");
-  Sweep& scan = log.scans[0].sweeps[0];
-  set_beam_angles(scan, {0.0, 0.1, 0.2, 0.31, 0.4});
-  scan.intensities.assign(5, 1.0F);
-  scan.start_s = 1.0;
+  Sweep& sweep = log.scans[0].sweeps[0];
+  set_beam_angles(sweep, {0.0, 0.1, 0.2, 0.31, 0.4});
+  sweep.intensities.assign(5, 1.0F);
+  sweep.start_s = 1.0;
   EXPECT_THAT(what_is_lost(log, LogFormat::kRawlog),
               HasSubstr("nearest of evenly spaced beams, times of beams are left "
                         "out, intensities are left out"));

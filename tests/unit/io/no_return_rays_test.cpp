@@ -22,9 +22,9 @@ Scan three_beams(float right_m, float ahead_m, float left_m, double max_range_m 
   sweep.first_angle_rad = -kPi / 2;
   sweep.angle_step_rad = kPi / 2;
   sweep.max_range_m = max_range_m;
-  Scan position;
-  position.sweeps.push_back(sweep);
-  return position;
+  Scan scan;
+  scan.sweeps.push_back(sweep);
+  return scan;
 }
 
 OccupancyGrid drawn(const PlacedLog& walk, double clear_no_return_m) {
@@ -34,9 +34,9 @@ OccupancyGrid drawn(const PlacedLog& walk, double clear_no_return_m) {
   return build_occupancy_grid(walk.log, walk.placed, {}, options);
 }
 
-PlacedLog one_scan(const Scan& position) {
+PlacedLog one_scan(const Scan& scan) {
   PlacedLog walk;
-  walk.add(position, {0.05, 0.05, 0.0});
+  walk.add(scan, {0.05, 0.05, 0.0});
   return walk;
 }
 

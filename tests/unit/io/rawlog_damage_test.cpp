@@ -25,18 +25,18 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-constexpr int kNumPositions = 4;
+constexpr int kNumScans = 4;
 
 class RawlogDamage : public testing::Test {
  protected:
   RawlogDamage() {
     Log log;
     LogPoses poses;
-    for (int i = 0; i < kNumPositions; ++i) {
-      Scan position;
-      position.timestamp_s = 100.0 + i;
-      position.sweeps = {make_scan(50, -1.0, 0.02), make_scan(50, 0.5, 0.02)};
-      log.scans.push_back(position);
+    for (int i = 0; i < kNumScans; ++i) {
+      Scan scan;
+      scan.timestamp_s = 100.0 + i;
+      scan.sweeps = {make_scan(50, -1.0, 0.02), make_scan(50, 0.5, 0.02)};
+      log.scans.push_back(scan);
       poses.map_from_robot.push_back({0.1 * i, 0.0, 0.0});
     }
     write_log(log, folder_.path("whole.rawlog"), LogFormat::kRawlog, &poses);
@@ -71,7 +71,7 @@ TEST_F(RawlogDamage, CutAnywhereGivesWhatIsWhole) {
       const Log log = read_log(path);
       ASSERT_GE(log.scans.size(), most);
       most = log.scans.size();
-      for (const Scan& position : log.scans) ASSERT_EQ(position.sweeps.size(), 2U);
+      for (const Scan& scan : log.scans) ASSERT_EQ(scan.sweeps.size(), 2U);
       // A cut just between two entries, or behind an end mark, cannot be seen.
       if (!log.warnings.empty()) {
         EXPECT_THAT(log.warnings, ElementsAre(AllOf(HasSubstr("whole entries"), HasSubstr("offset"))));

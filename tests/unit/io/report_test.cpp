@@ -26,15 +26,15 @@ class Report : public testing::Test {
     result_.scans[0].component = 0;
     result_.scans[0].starts_component = true;
     result_.scans[1].component = 0;
-    result_.scans[1].alignment.status = MatchStatus::kOk;
-    result_.scans[1].alignment.ref_from_query = {1.0, 2.0, kPi / 2};
-    result_.scans[1].alignment.overlap = 77;
-    result_.scans[1].alignment.query_from_sweep = {Pose2{0.01, 0.0, 0.0}};
+    result_.scans[1].match.status = MatchStatus::kOk;
+    result_.scans[1].match.ref_from_query = {1.0, 2.0, kPi / 2};
+    result_.scans[1].match.overlap = 77;
+    result_.scans[1].match.query_from_sweep = {Pose2{0.01, 0.0, 0.0}};
     result_.scans[2].component = 1;
     result_.scans[2].starts_component = true;
     result_.scans[2].reason = "only 3 of 10";
-    result_.scans[2].alignment.status = MatchStatus::kTooFewCorrespondences;
-    result_.scans[2].alignment.ref_from_query = {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0};
+    result_.scans[2].match.status = MatchStatus::kTooFewCorrespondences;
+    result_.scans[2].match.ref_from_query = {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0};
     selection_.skip = 5;
     selection_.every = 2;
   }
@@ -99,19 +99,19 @@ TEST_F(Report, TellsWhatThePicturesShowAndHowFarTheyAreTurned) {
 }
 
 TEST_F(Report, OfThePapersMethodHasNoProbability) {
-  const Json alignment = parsed()["positions"][1]["alignment"];
-  EXPECT_TRUE(alignment["probability"].is_null());
-  EXPECT_TRUE(alignment["covariance"].is_null());
-  EXPECT_TRUE(alignment["ranked"].empty());
+  const Json match = parsed()["positions"][1]["alignment"];
+  EXPECT_TRUE(match["probability"].is_null());
+  EXPECT_TRUE(match["covariance"].is_null());
+  EXPECT_TRUE(match["ranked"].empty());
 }
 
 TEST_F(Report, TellsHowSureAPoseIsAndWhatElseItMightBe) {
-  ScanMatch& alignment = result_.scans[1].alignment;
+  ScanMatch& match = result_.scans[1].match;
   for (const MatchStatus status : {MatchStatus::kOk, MatchStatus::kAmbiguous, MatchStatus::kDegenerate}) {
-    alignment.status = status;
-    alignment.probability = 0.75;
-    alignment.covariance << 1.0, 2.0, 3.0, 2.0, 5.0, 6.0, 3.0, 6.0, 9.0;
-    alignment.ranked = {{alignment.ref_from_query, 3.5, 0.6, 0.1}, {{-1.0, 0.0, 0.0}, 3.25, 0.5, 0.2}};
+    match.status = status;
+    match.probability = 0.75;
+    match.covariance << 1.0, 2.0, 3.0, 2.0, 5.0, 6.0, 3.0, 6.0, 9.0;
+    match.ranked = {{match.ref_from_query, 3.5, 0.6, 0.1}, {{-1.0, 0.0, 0.0}, 3.25, 0.5, 0.2}};
     const Json shown = parsed()["positions"][1]["alignment"];
     EXPECT_EQ(shown["status"], enum_name(status));
     EXPECT_EQ(shown["ref_from_query"]["x_m"], 1.0) << "a pose in doubt is a pose";
@@ -127,8 +127,8 @@ TEST_F(Report, TellsHowSureAPoseIsAndWhatElseItMightBe) {
 }
 
 TEST_F(Report, ShowsNoPoseWhereNoneIsTrusted) {
-  ScanMatch& alignment = result_.scans[1].alignment;
-  alignment.status = MatchStatus::kTooLittleOverlap;
+  ScanMatch& match = result_.scans[1].match;
+  match.status = MatchStatus::kTooLittleOverlap;
   EXPECT_TRUE(parsed()["positions"][1]["alignment"]["ref_from_query"].is_null());
 }
 

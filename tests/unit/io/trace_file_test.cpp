@@ -58,9 +58,9 @@ class TraceOfAWalk : public testing::Test {
 
 /// Compares the pairs that the file names with those of an alignment made anew, point by point.
 struct Comparison : TraceSink {
-  void on_alignment(const TracedAlignment& alignment) override {
-    all.push_back(alignment.steps.rotations.at(static_cast<std::size_t>(alignment.steps.best_rotation)));
-    targets.push_back(alignment.targets);
+  void on_alignment(const TracedAlignment& match) override {
+    all.push_back(match.steps.rotations.at(static_cast<std::size_t>(match.steps.best_rotation)));
+    targets.push_back(match.targets);
   }
   std::vector<RotationMatch> all;
   std::vector<std::vector<TracedTarget>> targets;
@@ -85,11 +85,11 @@ TEST_F(TraceOfAWalk, NamesThePointsOfEachPair) {
       EXPECT_EQ(record["segments"].size(), match.segments.size());
       EXPECT_EQ(record["kept"].size(), match.translation.kept.size());
       for (std::size_t i = 0; i < match.lcs.size(); ++i) {
-        const std::size_t position = record["lcs"][i][1];
-        const auto& point = traced["position"].at(position)["points"].at(record["lcs"][i][2].get<std::size_t>());
+        const std::size_t scan = record["lcs"][i][1];
+        const auto& point = traced["position"].at(scan)["points"].at(record["lcs"][i][2].get<std::size_t>());
         Pose2 ref_from_robot;
         for (const TracedTarget& t : comparison.targets[k]) {
-          if (t.scan_index == position) ref_from_robot = t.ref_from_robot;
+          if (t.scan_index == scan) ref_from_robot = t.ref_from_robot;
         }
         const Point2 p_m = ref_from_robot * Point2(point[0], point[1]);
         EXPECT_NEAR((p_m - match.lcs[i].target_m).norm(), 0.0, 1e-9) << enum_name(target) << " " << k << " " << i;
@@ -107,13 +107,13 @@ TEST_F(TraceOfAWalk, HasARecordForEachStep) {
   EXPECT_EQ(traced["run"][0]["options"]["method"], "paper");
   EXPECT_FALSE(traced["run"][0]["options"].contains("threads"));
   ASSERT_EQ(traced["position"].size(), 4U);
-  const auto& position = traced["position"][2];
-  EXPECT_EQ(position["index_in_whole_log"], 9);
-  EXPECT_EQ(position["timestamp_s"], 12.0);
-  const auto& sweep = position["sub_scans"].at(0);
+  const auto& scan = traced["position"][2];
+  EXPECT_EQ(scan["index_in_whole_log"], 9);
+  EXPECT_EQ(scan["timestamp_s"], 12.0);
+  const auto& sweep = scan["sub_scans"].at(0);
   EXPECT_EQ(sweep["scan_points"].size(), sweep["closest_segment"].size());
   EXPECT_GT(sweep["segments"].size(), 3U);
-  EXPECT_EQ(position["histograms"].size(), position["points"].size());
+  EXPECT_EQ(scan["histograms"].size(), scan["points"].size());
   ASSERT_EQ(traced["result"].size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(traced["result"][i]["fragment_from_robot"][0], result.placed().at(i).map_from_robot.x_m);
@@ -126,13 +126,13 @@ TEST_F(TraceOfAWalk, HasARecordForEachStep) {
 
 TEST_F(TraceOfAWalk, HoldsTheHistogramsThatMatchingSees) {
   write(path());
-  const auto position = records(path())["position"][1];
+  const auto scan = records(path())["position"][1];
   const Shape shape = test::shape_of(log_.scans[1], options_);
   const auto expected = NeighbourDirections(shape, 0.50).histograms(0.0, HistogramNorm::kMaximum);
-  ASSERT_EQ(position["histograms"].size(), expected.size());
+  ASSERT_EQ(scan["histograms"].size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     AngularHistogram read;
-    const auto& bins = position["histograms"][i];
+    const auto& bins = scan["histograms"][i];
     for (std::size_t k = 0; k + 1 < bins.size(); k += 2) read.bins.at(bins[k].get<std::size_t>()) = bins[k + 1];
     EXPECT_EQ(read.bins, expected[i].bins) << i;
   }
@@ -176,7 +176,7 @@ TEST_F(TraceOfAWalk, TellsHowLinksInDoubtWereJudged) {
     }
     EXPECT_LT(revision["in_map"], candidates.size());
     EXPECT_EQ(revision["alternative"], traced["choice"][k]["alternative"]);
-    EXPECT_EQ(revision["probability"], mapped.scans[k + 1].alignment.probability);
+    EXPECT_EQ(revision["probability"], mapped.scans[k + 1].match.probability);
   }
 }
 

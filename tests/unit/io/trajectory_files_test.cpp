@@ -110,10 +110,10 @@ TEST(Motions, AreThoseBetweenPlacedPositionsAfterAZeroForTheFirst) {
   result.largest_component = 0;
   result.components.emplace_back();
   for (std::size_t i = 0; i < 3; ++i) {
-    ScanResult position;
-    position.scan_index = i;
-    position.alignment.covariance = Eigen::Matrix3d::Identity() * static_cast<double>(i);
-    result.scans.push_back(position);
+    ScanResult scan;
+    scan.scan_index = i;
+    scan.match.covariance = Eigen::Matrix3d::Identity() * static_cast<double>(i);
+    result.scans.push_back(scan);
   }
   // The second position of the log has no place.
   result.components[0].scans.push_back({0, 10.0, {1.0, 2.0, kPi / 2}, {}});
@@ -127,10 +127,10 @@ TEST(Motions, AreThoseBetweenPlacedPositionsAfterAZeroForTheFirst) {
   EXPECT_THAT(motions[1].previous_from_this, IsNearPose(Pose2{3.0, 0.0, kPi / 2}, 1e-12, 1e-12));
   EXPECT_EQ(motions[1].covariance, Eigen::Matrix3d::Identity() * 2.0);
 
-  result.scans[2].alignment.covariance(0, 0) = std::numeric_limits<double>::quiet_NaN();
-  result.scans[2].alignment.status = MatchStatus::kOk;
+  result.scans[2].match.covariance(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  result.scans[2].match.status = MatchStatus::kOk;
   EXPECT_THROW(motions_of(result), ConfigError) << "as by the paper's method";
-  result.scans[2].alignment.status = MatchStatus::kNoCorrespondences;
+  result.scans[2].match.status = MatchStatus::kNoCorrespondences;
   EXPECT_EQ(motions_of(result)[1].covariance, Eigen::Matrix3d::Identity()) << "loops alone put it there";
 }
 
@@ -140,14 +140,14 @@ struct Siblings : testing::Test {
     result.largest_component = 0;
     result.components.emplace_back();
     for (std::size_t i = 0; i < 3; ++i) {
-      ScanResult position;
-      position.scan_index = i;
-      position.component = 0;
-      position.is_keyframe = i == 0;
-      position.alignment.covariance = Eigen::Vector3d(1e-4, 4e-4, 1e-5).asDiagonal();
-      position.alignment.ranked.emplace_back();
-      position.alignment.ranked.front().ref_from_query = poses[i];
-      result.scans.push_back(position);
+      ScanResult scan;
+      scan.scan_index = i;
+      scan.component = 0;
+      scan.is_keyframe = i == 0;
+      scan.match.covariance = Eigen::Vector3d(1e-4, 4e-4, 1e-5).asDiagonal();
+      scan.match.ranked.emplace_back();
+      scan.match.ranked.front().ref_from_query = poses[i];
+      result.scans.push_back(scan);
       result.components[0].scans.push_back({i, static_cast<double>(i), poses[i], {}});
     }
   }
@@ -157,7 +157,7 @@ struct Siblings : testing::Test {
 
 TEST_F(Siblings, MotionBetweenThemErrsByBothAlignments) {
   const std::vector<TimedMotion> motions = motions_of(result);
-  EXPECT_EQ(motions[1].covariance, result.scans[1].alignment.covariance) << "from the keyframe itself";
+  EXPECT_EQ(motions[1].covariance, result.scans[1].match.covariance) << "from the keyframe itself";
   std::mt19937 rng(7);
   std::normal_distribution<double> noise(0.0, 1.0);
   const auto disturbed = [&](const Pose2& pose) {

@@ -14,7 +14,7 @@
 namespace shapemap {
 namespace {
 
-using test::KnownChain;
+using test::KnownGraph;
 using test::Laps;
 
 constexpr std::size_t kSettled = test::kRingLap + 6;
@@ -40,15 +40,15 @@ const MappingOptions& quick() {
 }
 
 /// What is followed after `num_settled` keyframes, whose part of the map is right.
-RevisitTracker::Followed followed(const Laps& laps, const KnownChain& known,
+RevisitTracker::Followed followed(const Laps& laps, const KnownGraph& known,
                                   const std::vector<LoopCandidate>& loops = {}, std::size_t num_settled = kSettled) {
   const MappingOptions options = quick();
   RevisitTracker revisits(options.robust);
   OptimizedMap map = known.map;
   std::copy(laps.truth.begin(), laps.truth.begin() + static_cast<std::ptrdiff_t>(num_settled),
             map.map_from_keyframe.begin());
-  revisits.start(known.chain, map, num_settled);
-  return revisits.follow(known.chain, loops);
+  revisits.start(known.graph, map, num_settled);
+  return revisits.follow(known.graph, loops);
 }
 
 std::size_t num_known(const RevisitTracker::Followed& followed, std::size_t first = 0) {
@@ -69,7 +69,7 @@ std::vector<Pose2> drifting(const std::vector<Pose2>& truth, const Pose2& error)
 }
 
 /// The link to keyframe `b` is off by `error`.
-KnownChain wrong_at(const Laps& laps, std::size_t b, const Pose2& error) {
+KnownGraph wrong_at(const Laps& laps, std::size_t b, const Pose2& error) {
   std::vector<Pose2> poses = laps.truth;
   for (std::size_t i = b; i < poses.size(); ++i) {
     poses[i] = poses[b - 1] * error * (inverse(laps.truth[b - 1]) * laps.truth[i]);
@@ -78,15 +78,15 @@ KnownChain wrong_at(const Laps& laps, std::size_t b, const Pose2& error) {
 }
 
 /// And in doubt.
-KnownChain doubtful_at(const Laps& laps, std::size_t b, const Pose2& error) {
-  KnownChain known = wrong_at(laps, b, error);
-  known.chain.edges[b - 1].choice.margin = 0.01;  // another place fits as well
+KnownGraph doubtful_at(const Laps& laps, std::size_t b, const Pose2& error) {
+  KnownGraph known = wrong_at(laps, b, error);
+  known.graph.edges[b - 1].choice.margin = 0.01;  // another place fits as well
   return known;
 }
 
 TEST(RevisitTracker, KnowThePlacesOfTheLapBefore) {
   const Laps& laps = two_laps();
-  const RevisitTracker::Followed result = followed(laps, KnownChain(laps));
+  const RevisitTracker::Followed result = followed(laps, KnownGraph(laps));
   ASSERT_EQ(result.redundant.size(), laps.truth.size());
   EXPECT_EQ(result.num_followed, end_of_followed(laps));
   EXPECT_GT(num_known(result), (result.num_followed - kSettled) * 3 / 4);
@@ -105,7 +105,7 @@ TEST(RevisitTracker, TakeTheErrorsOfTheChainAway) {
   const Laps& laps = two_laps();
   const Pose2 error{0.02, 0.01, 0.3 * kDegree};
   const std::vector<Pose2> drifted = drifting(laps.truth, error);
-  const RevisitTracker::Followed result = followed(laps, KnownChain(laps, drifted));
+  const RevisitTracker::Followed result = followed(laps, KnownGraph(laps, drifted));
   const std::size_t last = result.num_followed - 1;
   const Pose2 chained = laps.truth[kSettled - 1] * inverse(drifted[kSettled - 1]) * drifted[last];
   EXPECT_GT((chained.translation() - laps.truth[last].translation()).norm(), 0.35);
@@ -116,10 +116,10 @@ TEST(RevisitTracker, TakeTheErrorsOfTheChainAway) {
 TEST(RevisitTracker, BelieveADoubtfulLinkWhenWhatComesAfterIsWhereItWasExpected) {
   const Laps& laps = two_laps();
   constexpr std::size_t kDoubtful = kSettled + 4;
-  const KnownChain known = doubtful_at(laps, kDoubtful, {});
-  ASSERT_LT(edge_probability(known.chain.edges[kDoubtful - 1]), 0.6);
+  const KnownGraph known = doubtful_at(laps, kDoubtful, {});
+  ASSERT_LT(edge_probability(known.graph.edges[kDoubtful - 1]), 0.6);
   const RevisitTracker::Followed result = followed(laps, known);
-  EXPECT_EQ(num_known(result), num_known(followed(laps, KnownChain(laps))));
+  EXPECT_EQ(num_known(result), num_known(followed(laps, KnownGraph(laps))));
   EXPECT_TRUE(result.map.loop_constrained[kDoubtful - 1]);
   EXPECT_EQ(result.map.component[result.num_followed - 1], 0U);
 }
@@ -128,14 +128,14 @@ TEST(RevisitTracker, BelieveADoubtfulLinkWhenWhatComesAfterIsWhereItWasExpected)
 TEST(RevisitTracker, TakeTheAlternativeAfterWhichPlacesAreKnownAgain) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
-  KnownChain known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
-  std::vector<MatchCandidate>& candidates = known.chain.edges[kWrong - 1].candidates;
+  KnownGraph known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
+  std::vector<MatchCandidate>& candidates = known.graph.edges[kWrong - 1].candidates;
   candidates.push_back(candidates.front());
   candidates.back().ref_from_query = inverse(laps.truth[kWrong - 1]) * laps.truth[kWrong];
   const RevisitTracker::Followed result = followed(laps, known);
   EXPECT_EQ(result.map.edge_choice[kWrong - 1], 1);
   EXPECT_TRUE(result.map.loop_constrained[kWrong - 1]);
-  EXPECT_EQ(num_known(result), num_known(followed(laps, KnownChain(laps))));
+  EXPECT_EQ(num_known(result), num_known(followed(laps, KnownGraph(laps))));
   for (std::size_t b = 0; b < result.num_followed; ++b) {
     EXPECT_THAT(result.map.map_from_keyframe[b], test::IsNearPose(laps.truth[b], 0.10, 2 * kDegree)) << b;
   }
@@ -149,8 +149,8 @@ TEST(RevisitTracker, TakeTheAlternativeAfterWhichPlacesAreKnownAgain) {
 TEST(RevisitTracker, TakeEitherOfTwoAlternativesThatAreOnePlace) {
   const Laps& laps = two_laps();
   constexpr std::size_t kDoubtful = kSettled + 4;
-  KnownChain known = doubtful_at(laps, kDoubtful, {0.7, 0.0, 5 * kDegree});
-  std::vector<MatchCandidate>& candidates = known.chain.edges[kDoubtful - 1].candidates;
+  KnownGraph known = doubtful_at(laps, kDoubtful, {0.7, 0.0, 5 * kDegree});
+  std::vector<MatchCandidate>& candidates = known.graph.edges[kDoubtful - 1].candidates;
   for (const double off_m : {0.01, -0.01}) {
     candidates.push_back(candidates.front());
     candidates.back().ref_from_query =
@@ -180,13 +180,13 @@ LoopCandidate loop_to(const Laps& laps, std::size_t b) {
 TEST(RevisitTracker, FindTheWayAgainWhereALoopPutsIt) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
-  const KnownChain known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
+  const KnownGraph known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
   LoopCandidate wrong = loop_to(laps, kWrong + 7);
   wrong.a -= 5;
   wrong.log_odds = 3.0;
   const RevisitTracker::Followed result = followed(laps, known, {wrong, loop_to(laps, kWrong + 9)});
   EXPECT_EQ(result.num_followed, laps.truth.size() - kKeyframesInUse);
-  EXPECT_GE(num_known(result) + 2, num_known(followed(laps, KnownChain(laps))));  // the two at the link stay
+  EXPECT_GE(num_known(result) + 2, num_known(followed(laps, KnownGraph(laps))));  // the two at the link stay
   for (std::size_t b = 0; b < result.num_followed; ++b) {
     EXPECT_EQ(result.map.component[b], 0U) << b;
     EXPECT_THAT(result.map.map_from_keyframe[b], test::IsNearPose(laps.truth[b], 0.10, 2 * kDegree)) << b;
@@ -208,11 +208,11 @@ TEST(RevisitTracker, FindNoWayWhereALoopIsWrong) {
 TEST(RevisitTracker, GetLostWhereSomethingElseIsSeen) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
-  KnownChain known = wrong_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
-  known.chain.edges[kWrong - 1].candidates = known.chain.edges[kWrong - 2].candidates;  // sure by what it seems to be
-  known.chain.edges[kWrong - 1].candidates.front().ref_from_query =
+  KnownGraph known = wrong_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
+  known.graph.edges[kWrong - 1].candidates = known.graph.edges[kWrong - 2].candidates;  // sure by what it seems to be
+  known.graph.edges[kWrong - 1].candidates.front().ref_from_query =
       inverse(laps.truth[kWrong - 1]) * laps.truth[kWrong] * Pose2{0.7, 0.0, 5 * kDegree};
-  ASSERT_GE(stated_probability(known.chain.edges[kWrong - 1]), kSureLink);
+  ASSERT_GE(stated_probability(known.graph.edges[kWrong - 1]), kSureEdge);
   const RevisitTracker::Followed result = followed(laps, known);
   EXPECT_LE(result.num_followed, kWrong + 2);
   EXPECT_EQ(num_known(result, kWrong), 0U);
@@ -222,7 +222,7 @@ TEST(RevisitTracker, GetLostWhereSomethingElseIsSeen) {
 TEST(RevisitTracker, GoOnWhereNobodyHasBeen) {
   const Laps& laps = two_laps();
   constexpr std::size_t kHalf = test::kRingLap / 2;
-  const RevisitTracker::Followed result = followed(laps, KnownChain(laps), {}, kHalf);
+  const RevisitTracker::Followed result = followed(laps, KnownGraph(laps), {}, kHalf);
   EXPECT_EQ(result.num_followed, end_of_followed(laps));
   for (std::size_t b = kHalf; b + 2 < test::kRingLap; ++b) EXPECT_FALSE(result.redundant[b]) << b;
   EXPECT_GT(num_known(result), (end_of_followed(laps) - test::kRingLap) / 2);
@@ -234,38 +234,38 @@ TEST(RevisitTracker, LeaveTheLinkToWhatComesNextAsItIs) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
   for (const bool lost : {false, true}) {
-    KnownChain known = lost ? doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}) : KnownChain(laps);
+    KnownGraph known = lost ? doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}) : KnownGraph(laps);
     RevisitTracker::Followed result = followed(laps, known);
     const std::size_t next = laps.truth.size() - result.num_followed;
     LoopCandidates loops;
-    cull_keyframes(result.redundant, quick(), result.map, known.chain, loops);
-    const std::size_t first_open = known.chain.keyframes.size() - next;
-    EXPECT_FALSE(known.chain.edges[first_open].culled_covariance);
-    EXPECT_TRUE(!lost || !known.chain.edges[first_open - 1].culled_covariance);
+    cull_keyframes(result.redundant, quick(), result.map, known.graph, loops);
+    const std::size_t first_open = known.graph.keyframes.size() - next;
+    EXPECT_FALSE(known.graph.edges[first_open].culled_covariance);
+    EXPECT_TRUE(!lost || !known.graph.edges[first_open - 1].culled_covariance);
   }
 }
 
 TEST(RevisitTracker, ForgiveAPlaceThatHasChanged) {
   const Laps& laps = two_laps();
   constexpr std::size_t kChanged = kSettled + 9;
-  KnownChain known(laps);
-  known.chain.keyframes[kChanged].view = known.chain.keyframes[kChanged - 20].view;
+  KnownGraph known(laps);
+  known.graph.keyframes[kChanged].view = known.graph.keyframes[kChanged - 20].view;
   const RevisitTracker::Followed result = followed(laps, known);
   EXPECT_FALSE(result.redundant[kChanged]);
   EXPECT_EQ(result.num_followed, end_of_followed(laps));
-  EXPECT_GE(num_known(result) + 2, num_known(followed(laps, KnownChain(laps))));
+  EXPECT_GE(num_known(result) + 2, num_known(followed(laps, KnownGraph(laps))));
 }
 
 TEST(RevisitTracker, KnowNothingAgainInAnotherLog) {
   const Laps& laps = two_laps();
   constexpr std::size_t kStart = kSettled + 4;
-  KnownChain known(laps);
-  known.chain.edges[kStart - 1] = {};
-  known.chain.edges[kStart - 2].transition_scores =
-      no_transition_scores(known.chain.edges[kStart - 2], known.chain.edges[kStart - 1]);
-  known.chain.edges[kStart - 1].transition_scores =
-      no_transition_scores(known.chain.edges[kStart - 1], known.chain.edges[kStart]);
-  choose_candidates(known.chain);
+  KnownGraph known(laps);
+  known.graph.edges[kStart - 1] = {};
+  known.graph.edges[kStart - 2].transition_scores =
+      no_transition_scores(known.graph.edges[kStart - 2], known.graph.edges[kStart - 1]);
+  known.graph.edges[kStart - 1].transition_scores =
+      no_transition_scores(known.graph.edges[kStart - 1], known.graph.edges[kStart]);
+  choose_candidates(known.graph);
   const RevisitTracker::Followed result = followed(laps, known);
   EXPECT_EQ(result.map.edge_choice[kStart - 1], kCut);
   EXPECT_EQ(num_known(result, kStart), 0U);
@@ -276,45 +276,45 @@ TEST(RevisitTracker, KnowNothingAgainInAnotherLog) {
 /// In small portions, with keyframes retired between, as the log is read.
 TEST(RevisitTracker, GoOnWhereTheyWere) {
   const Laps& laps = two_laps();
-  KnownChain all(laps);
-  KnownChain known(laps);
-  known.chain.keyframes.resize(kSettled + kKeyframesInUse);
-  known.chain.edges.resize(kSettled + kKeyframesInUse - 1);
-  choose_candidates(known.chain);
+  KnownGraph all(laps);
+  KnownGraph known(laps);
+  known.graph.keyframes.resize(kSettled + kKeyframesInUse);
+  known.graph.edges.resize(kSettled + kKeyframesInUse - 1);
+  choose_candidates(known.graph);
   OptimizedMap map = known.map;
-  map.map_from_keyframe.resize(known.chain.keyframes.size());
-  map.component.resize(known.chain.keyframes.size());
-  map.edge_choice.resize(known.chain.edges.size());
-  map.loop_constrained.resize(known.chain.edges.size());
+  map.map_from_keyframe.resize(known.graph.keyframes.size());
+  map.component.resize(known.graph.keyframes.size());
+  map.edge_choice.resize(known.graph.edges.size());
+  map.loop_constrained.resize(known.graph.edges.size());
   const MappingOptions options = quick();
   RevisitTracker revisits(options.robust);
-  revisits.start(known.chain, map, kSettled);
+  revisits.start(known.graph, map, kSettled);
   LoopCandidates loops;
   std::size_t num_retired = 0;
   for (std::size_t next = kSettled + kKeyframesInUse; next < laps.truth.size(); next += 7) {
     for (std::size_t i = next; i < std::min(next + 7, laps.truth.size()); ++i) {
-      known.chain.keyframes.push_back(all.chain.keyframes[i]);
-      known.chain.edges.push_back(all.chain.edges[i - 1]);
+      known.graph.keyframes.push_back(all.graph.keyframes[i]);
+      known.graph.edges.push_back(all.graph.edges[i - 1]);
     }
-    choose_candidates(known.chain);
-    RevisitTracker::Followed result = revisits.follow(known.chain, {});
+    choose_candidates(known.graph);
+    RevisitTracker::Followed result = revisits.follow(known.graph, {});
     num_retired += num_known(result);
-    const std::size_t num_open = known.chain.keyframes.size() - result.num_followed;
-    cull_keyframes(result.redundant, quick(), result.map, known.chain, loops);
-    ASSERT_EQ(result.map.map_from_keyframe.size(), known.chain.keyframes.size());
-    for (std::size_t i = 0; i < known.chain.keyframes.size(); ++i) {
-      const Pose2& truth = laps.truth[known.chain.keyframes[i].scan_index];
+    const std::size_t num_open = known.graph.keyframes.size() - result.num_followed;
+    cull_keyframes(result.redundant, quick(), result.map, known.graph, loops);
+    ASSERT_EQ(result.map.map_from_keyframe.size(), known.graph.keyframes.size());
+    for (std::size_t i = 0; i < known.graph.keyframes.size(); ++i) {
+      const Pose2& truth = laps.truth[known.graph.keyframes[i].scan_index];
       EXPECT_THAT(result.map.map_from_keyframe[i], test::IsNearPose(truth, 0.10, 2 * kDegree));
     }
     for (const PoseConstraint& constraint : result.map.constraints) {
-      const Pose2& a = laps.truth[known.chain.keyframes[constraint.a].scan_index];
-      const Pose2& b = laps.truth[known.chain.keyframes[constraint.b].scan_index];
+      const Pose2& a = laps.truth[known.graph.keyframes[constraint.a].scan_index];
+      const Pose2& b = laps.truth[known.graph.keyframes[constraint.b].scan_index];
       EXPECT_THAT(constraint.a_from_b, test::IsNearPose(inverse(a) * b, 0.10, 2 * kDegree));
     }
     revisits.renew(std::move(result.map), num_open);
   }
   EXPECT_EQ(num_retired, num_known(followed(laps, all)));
-  EXPECT_EQ(known.chain.keyframes.size(), laps.truth.size() - num_retired);
+  EXPECT_EQ(known.graph.keyframes.size(), laps.truth.size() - num_retired);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ std::set<std::set<Key>> keys_of(const std::vector<LoopCluster>& clusters) {
 struct Way {
   explicit Way(unsigned seed) : rng(seed) {
     poses = test::random_walk(rng, 60);
-    pieces.assign(poses.size(), 0);
+    submaps.assign(poses.size(), 0);
   }
 
   /// As if the map were bent between the two stretches by `bend`, with an error of its own for each.
@@ -53,7 +53,7 @@ struct Way {
 
   std::mt19937 rng;
   std::vector<Pose2> poses;
-  std::vector<std::size_t> pieces;
+  std::vector<std::size_t> submaps;
 };
 
 TEST(LoopClusters, HoldWhatIsConsistentAndLeaveOutWhatIsNot) {
@@ -67,7 +67,7 @@ TEST(LoopClusters, HoldWhatIsConsistentAndLeaveOutWhatIsNot) {
       const Pose2 wrong = bend * Pose2{2.0 + 3.0 * static_cast<double>(k), 0.0, 0.0};
       candidates.push_back(way.candidate(5 + k, 40 + k, wrong, 0.0));
     }
-    const std::vector<LoopCluster> clusters = loop_clusters(candidates, way.poses, way.pieces, {});
+    const std::vector<LoopCluster> clusters = loop_clusters(candidates, way.poses, way.submaps, {});
     ASSERT_EQ(clusters.size(), 1U) << seed;
     EXPECT_EQ(keys_of(clusters[0]), expected) << seed;
     EXPECT_EQ(clusters[0].num_a, 10U);
@@ -80,11 +80,11 @@ TEST(LoopClusters, HoldWhatIsConsistentAndLeaveOutWhatIsNot) {
 TEST(LoopClusters, DoNotReachFromOnePieceToTheNext) {
   Way way(1);
   const std::vector<LoopCandidate> candidates = way.planted({1.0, 0.0, 0.5});
-  ASSERT_EQ(loop_clusters(candidates, way.poses, way.pieces, {}).size(), 1U);
+  ASSERT_EQ(loop_clusters(candidates, way.poses, way.submaps, {}).size(), 1U);
   const auto cut_at = [&](std::size_t node) {
-    std::vector<std::size_t> pieces(way.poses.size(), 0);
-    for (std::size_t n = node; n < pieces.size(); ++n) pieces[n] = 1;
-    return pieces;
+    std::vector<std::size_t> submaps(way.poses.size(), 0);
+    for (std::size_t n = node; n < submaps.size(); ++n) submaps[n] = 1;
+    return submaps;
   };
   const std::vector<LoopCluster> two_first = loop_clusters(candidates, way.poses, cut_at(8), {});
   ASSERT_EQ(two_first.size(), 2U) << "nodes 5 to 7, and the seven after";
@@ -99,17 +99,17 @@ TEST(LoopClusters, NeedSeveralNodesOnEitherSide) {
   Way way(2);
   std::vector<LoopCandidate> candidates;
   for (std::size_t k = 0; k < 4; ++k) candidates.push_back(way.candidate(5, 40 + k, {}, 0.0));
-  EXPECT_TRUE(loop_clusters(candidates, way.poses, way.pieces, {}).empty()) << "all of it hangs on one scan";
+  EXPECT_TRUE(loop_clusters(candidates, way.poses, way.submaps, {}).empty()) << "all of it hangs on one scan";
   candidates.push_back(way.candidate(6, 41, {}, 0.0));
-  EXPECT_EQ(loop_clusters(candidates, way.poses, way.pieces, {}).size(), 1U);
+  EXPECT_EQ(loop_clusters(candidates, way.poses, way.submaps, {}).size(), 1U);
   ClusterOptions options;
   options.least_nodes = 3;
-  EXPECT_TRUE(loop_clusters(candidates, way.poses, way.pieces, options).empty());
-  EXPECT_TRUE(loop_clusters({}, way.poses, way.pieces, {}).empty());
+  EXPECT_TRUE(loop_clusters(candidates, way.poses, way.submaps, options).empty());
+  EXPECT_TRUE(loop_clusters({}, way.poses, way.submaps, {}).empty());
 }
 
 /// Enough of them near enough to each other that all cases come up.
-std::vector<LoopCandidate> random_hypotheses(Way& way, std::size_t count) {
+std::vector<LoopCandidate> random_candidates(Way& way, std::size_t count) {
   const std::vector<Pose2> bends{{}, {0.3, 0.0, 0.0}, {0.0, 0.0, 0.08}, {5.0, 1.0, 1.0}};
   std::uniform_int_distribution<std::size_t> first(0, 20);
   std::uniform_int_distribution<std::size_t> last(35, 59);
@@ -130,8 +130,8 @@ bool support(const Way& way, const LoopCandidate& x, const LoopCandidate& y, con
   const LoopCandidate& other = x.b <= y.b ? y : x;
   const auto window = static_cast<double>(options.window);
   if (std::abs(static_cast<double>(one.a) - static_cast<double>(other.a)) > window ||
-      static_cast<double>(other.b - one.b) > window || way.pieces[one.a] != way.pieces[other.a] ||
-      way.pieces[one.b] != way.pieces[other.b]) {
+      static_cast<double>(other.b - one.b) > window || way.submaps[one.a] != way.submaps[other.a] ||
+      way.submaps[one.b] != way.submaps[other.b]) {
     return false;
   }
   const Pose2 by_detour =
@@ -174,14 +174,14 @@ TEST(LoopClusters, AreTheGroupsThatAFloodFillFindsWhateverTheOrder) {
   std::size_t num_clusters = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
     Way way(seed);
-    for (std::size_t node = 10 + seed % 5; node < way.pieces.size(); ++node) way.pieces[node] = node < 48 ? 1 : 2;
-    std::vector<LoopCandidate> candidates = random_hypotheses(way, 20 + 4 * seed);
+    for (std::size_t node = 10 + seed % 5; node < way.submaps.size(); ++node) way.submaps[node] = node < 48 ? 1 : 2;
+    std::vector<LoopCandidate> candidates = random_candidates(way, 20 + 4 * seed);
     ClusterOptions options;
     options.window = 1 + static_cast<int>(seed % 5);
     const std::set<std::set<Key>> expected = by_flood_fill(way, candidates, options);
     num_clusters += expected.size();
     for (int order = 0; order < 4; ++order) {
-      EXPECT_EQ(keys_of(loop_clusters(candidates, way.poses, way.pieces, options)), expected) << seed;
+      EXPECT_EQ(keys_of(loop_clusters(candidates, way.poses, way.submaps, options)), expected) << seed;
       std::shuffle(candidates.begin(), candidates.end(), way.rng);
     }
   }
@@ -191,7 +191,7 @@ TEST(LoopClusters, AreTheGroupsThatAFloodFillFindsWhateverTheOrder) {
 TEST(LoopClusters, AreAsStrongAsTheirWeakerSideAndTheStrongestComesFirst) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Way way(seed);
-    const std::vector<LoopCluster> clusters = loop_clusters(random_hypotheses(way, 120), way.poses, way.pieces, {});
+    const std::vector<LoopCluster> clusters = loop_clusters(random_candidates(way, 120), way.poses, way.submaps, {});
     for (std::size_t k = 0; k < clusters.size(); ++k) {
       std::map<std::size_t, double> by_a;
       std::map<std::size_t, double> by_b;

@@ -14,8 +14,8 @@ namespace {
 struct Walk {
   Walk() {
     for (std::size_t n = 0; n < 60; ++n) map.push_back({static_cast<double>(n), 0.0, 0.0});
-    edges = test::drifting_links(map, 0.0);
-    for (EdgeChoices& link : edges) link.probability = 0.99;
+    edges = test::drifting_edges(map, 0.0);
+    for (EdgeChoices& edge : edges) edge.probability = 0.99;
   }
 
   LoopCandidate loop(std::size_t a, std::size_t b, const Pose2& a_from_b, double log_odds) const {
@@ -33,7 +33,7 @@ struct Walk {
   std::vector<EdgeChoices> edges;
 };
 
-TEST(LookAlikes, WhereNothingIsContradictedAllIsKept) {
+TEST(PerceptualAliasing, WhereNothingIsContradictedAllIsKept) {
   const Walk walk;
   const std::vector<LoopCandidate> kept = walk.of({walk.right(3, 15, 4.0), walk.loop(2, 55, {}, 1.0)});
   ASSERT_EQ(kept.size(), 2U);
@@ -41,7 +41,7 @@ TEST(LookAlikes, WhereNothingIsContradictedAllIsKept) {
   EXPECT_EQ(kept[1].log_odds, 1.0) << "the chain is not sure of what is so far apart";
 }
 
-TEST(LookAlikes, WhatTheChainContradictsIsLeftOutAndCountsAgainstTheOthersThere) {
+TEST(PerceptualAliasing, WhatTheChainContradictsIsLeftOutAndCountsAgainstTheOthersThere) {
   const Walk walk;
   const std::vector<LoopCandidate> kept = walk.of({walk.loop(10, 22, {0.1, 0.0, 0.0}, 3.0), walk.loop(3, 52, {}, 6.0),
                                                    walk.loop(8, 58, {}, 6.0), walk.loop(4, 24, {20.0, 0.0, 0.0}, 2.0)});
@@ -51,13 +51,13 @@ TEST(LookAlikes, WhatTheChainContradictsIsLeftOutAndCountsAgainstTheOthersThere)
   EXPECT_NEAR(kept[2].log_odds, -3.0, 1e-12) << "two nodes from the other, though the chain agrees";
 }
 
-TEST(LookAlikes, ATurnIsContradictedAsWell) {
+TEST(PerceptualAliasing, ATurnIsContradictedAsWell) {
   const Walk walk;
   EXPECT_TRUE(walk.of({walk.loop(10, 20, {10.0, 0.0, 180 * kDegree}, 3.0)}).empty());
   EXPECT_EQ(walk.of({walk.loop(10, 20, {10.0, 0.0, 20 * kDegree}, 3.0)}).size(), 1U);
 }
 
-TEST(LookAlikes, ADoubtfulLinkOrOneThatSlidesContradictsNothing) {
+TEST(PerceptualAliasing, ADoubtfulLinkOrOneThatSlidesContradictsNothing) {
   const LoopCandidate off = Walk().loop(10, 22, {}, 3.0);
   Walk doubtful;
   doubtful.edges[15].probability = 0.9;
@@ -70,7 +70,7 @@ TEST(LookAlikes, ADoubtfulLinkOrOneThatSlidesContradictsNothing) {
   EXPECT_EQ(gap.of({off}).size(), 1U);
 }
 
-TEST(LookAlikes, NeedsAMapOfTheChain) {
+TEST(PerceptualAliasing, NeedsAMapOfTheChain) {
   Walk walk;
   walk.map.pop_back();
   EXPECT_THROW(walk.of({}), std::invalid_argument);

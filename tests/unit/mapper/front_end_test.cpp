@@ -73,15 +73,15 @@ void expect_same_bits(const ScanResult& a, const ScanResult& b) {
   EXPECT_EQ(a.component, b.component);
   EXPECT_EQ(a.starts_component, b.starts_component);
   EXPECT_EQ(a.reason, b.reason);
-  EXPECT_EQ(a.alignment.status, b.alignment.status);
-  EXPECT_THAT(a.alignment.ref_from_query, HasSameBits(b.alignment.ref_from_query));
-  ASSERT_EQ(a.alignment.ranked.size(), b.alignment.ranked.size());
-  for (std::size_t k = 0; k < a.alignment.ranked.size(); ++k) {
-    EXPECT_THAT(a.alignment.ranked[k].ref_from_query, HasSameBits(b.alignment.ranked[k].ref_from_query));
-    EXPECT_EQ(a.alignment.ranked[k].score, b.alignment.ranked[k].score);
+  EXPECT_EQ(a.match.status, b.match.status);
+  EXPECT_THAT(a.match.ref_from_query, HasSameBits(b.match.ref_from_query));
+  ASSERT_EQ(a.match.ranked.size(), b.match.ranked.size());
+  for (std::size_t k = 0; k < a.match.ranked.size(); ++k) {
+    EXPECT_THAT(a.match.ranked[k].ref_from_query, HasSameBits(b.match.ranked[k].ref_from_query));
+    EXPECT_EQ(a.match.ranked[k].score, b.match.ranked[k].score);
   }
-  if (!std::isnan(b.alignment.probability)) {
-    EXPECT_EQ(a.alignment.probability, b.alignment.probability);
+  if (!std::isnan(b.match.probability)) {
+    EXPECT_EQ(a.match.probability, b.match.probability);
   }
 }
 
@@ -103,8 +103,8 @@ TEST(FrontEnd, FollowsAKnownWalkWithAnyHeading) {
     for (std::size_t i = 1; i < count; ++i) {
       EXPECT_EQ(result.placed()[i].scan_index, i);
       const Pose2 step = inverse(truth[i - 1]) * truth[i];
-      EXPECT_THAT(result.scans[i].alignment.ref_from_query, IsNearPose(step, 0.10, 2 * kDegree)) << i;
-      const Pose2 map_from_robot = result.placed()[i - 1].map_from_robot * result.scans[i].alignment.ref_from_query;
+      EXPECT_THAT(result.scans[i].match.ref_from_query, IsNearPose(step, 0.10, 2 * kDegree)) << i;
+      const Pose2 map_from_robot = result.placed()[i - 1].map_from_robot * result.scans[i].match.ref_from_query;
       EXPECT_THAT(result.placed()[i].map_from_robot, HasSameBits(map_from_robot)) << "the alignments in a row";
     }
   }
@@ -113,12 +113,12 @@ TEST(FrontEnd, FollowsAKnownWalkWithAnyHeading) {
 TEST(FrontEnd, OfNothingAndOfBlindScansIsNoMap) {
   EXPECT_TRUE(mapped({}).scans.empty());
   Log log;
-  log.scans.assign(kBlock + 2, test::blind_position());
+  log.scans.assign(kBlock + 2, test::blind_scan());
   const MapResult result = mapped(log);
   EXPECT_TRUE(result.components.empty());
   EXPECT_EQ(result.largest_component, -1);
   ASSERT_EQ(result.scans.size(), kBlock + 2);
-  for (const ScanResult& position : result.scans) EXPECT_FALSE(position.reason.empty());
+  for (const ScanResult& scan : result.scans) EXPECT_FALSE(scan.reason.empty());
 }
 
 TEST(FrontEnd, OfOneScanIsOneFragmentOfOneAtTheOrigin) {
@@ -133,7 +133,7 @@ TEST(FrontEnd, ABlindScanIsReportedAndSplitsNothing) {
   const std::vector<Pose2> truth = walk(6);
   const MapResult whole = mapped(log_of(truth));
   Log log = log_of(truth);
-  log.scans.insert(log.scans.begin() + 3, test::blind_position());
+  log.scans.insert(log.scans.begin() + 3, test::blind_scan());
   const MapResult result = mapped(log);
   EXPECT_EQ(result.components.size(), 1U);
   ASSERT_EQ(result.placed().size(), 6U);
@@ -142,7 +142,7 @@ TEST(FrontEnd, ABlindScanIsReportedAndSplitsNothing) {
     EXPECT_THAT(result.placed()[i].map_from_robot, HasSameBits(whole.placed()[i].map_from_robot));
   }
   const ScanResult& blind = result.scans[3];
-  EXPECT_EQ(blind.alignment.status, MatchStatus::kNoShape);
+  EXPECT_EQ(blind.match.status, MatchStatus::kNoShape);
   EXPECT_EQ(blind.component, -1);
   EXPECT_FALSE(blind.starts_component);
   EXPECT_EQ(blind.reason, "only 0 shape points, 10 are needed");
@@ -168,7 +168,7 @@ TEST(FrontEnd, BordersOfBlocksChangeNothing) {
     const MapResult result = mapped(log, options);
     for (const std::size_t shift : {std::size_t{1}, kBlock / 2, kBlock - 1}) {
       Log shifted = log;
-      shifted.scans.insert(shifted.scans.begin(), shift, test::blind_position());
+      shifted.scans.insert(shifted.scans.begin(), shift, test::blind_scan());
       MapResult later = mapped(shifted, options);
       later.scans.erase(later.scans.begin(), later.scans.begin() + static_cast<std::ptrdiff_t>(shift));
       expect_same_bits(later, result);
@@ -177,15 +177,15 @@ TEST(FrontEnd, BordersOfBlocksChangeNothing) {
 }
 
 TEST(FrontEnd, PosesThatAPositionMayHaveAreApart) {
-  for (const ScanResult& position : mapped(log_of(walk(12)), in_doubt()).scans) {
-    const std::vector<RankedPose>& ranked = position.alignment.ranked;
+  for (const ScanResult& scan : mapped(log_of(walk(12)), in_doubt()).scans) {
+    const std::vector<RankedPose>& ranked = scan.match.ranked;
     for (std::size_t i = 0; i < ranked.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
         const Pose2 a = ranked[i].ref_from_query;
         const Pose2 b = ranked[k].ref_from_query;
         EXPECT_TRUE((a.translation() - b.translation()).norm() > 0.05 ||
                     angle_between(a.theta_rad, b.theta_rad) > kDegree)
-            << position.scan_index;
+            << scan.scan_index;
       }
     }
   }
@@ -237,11 +237,11 @@ TEST(FrontEnd, SplitsWhereItIsToldToAndSaysWhy) {
   EXPECT_EQ(result.components.size(), 5U);
   EXPECT_EQ(result.placed().size(), 1U);
   for (std::size_t i = 1; i < 5; ++i) {
-    const ScanResult& position = result.scans[i];
-    EXPECT_EQ(position.component, static_cast<int>(i));
-    EXPECT_TRUE(position.starts_component);
-    EXPECT_TRUE(position.alignment.has_pose()) << "what was found is told all the same";
-    EXPECT_FALSE(position.reason.empty()) << "a split has a reason";
+    const ScanResult& scan = result.scans[i];
+    EXPECT_EQ(scan.component, static_cast<int>(i));
+    EXPECT_TRUE(scan.starts_component);
+    EXPECT_TRUE(scan.match.has_pose()) << "what was found is told all the same";
+    EXPECT_FALSE(scan.reason.empty()) << "a split has a reason";
     EXPECT_THAT(result.components[i].scans[0].map_from_robot, HasSameBits(Pose2{}));
   }
   options.robust.front_end.split_below = 0.0;
@@ -255,8 +255,8 @@ TEST(FrontEnd, RefusedAlignmentsKeepTheMapInOnePieceAndAreReported) {
   EXPECT_EQ(result.components.size(), 1U);
   EXPECT_EQ(result.placed().size(), 4U);
   for (std::size_t i = 1; i < 4; ++i) {
-    EXPECT_EQ(result.scans[i].alignment.status, MatchStatus::kTooLittleOverlap);
-    EXPECT_EQ(result.scans[i].reason, result.scans[i].alignment.reason);
+    EXPECT_EQ(result.scans[i].match.status, MatchStatus::kTooLittleOverlap);
+    EXPECT_EQ(result.scans[i].reason, result.scans[i].match.reason);
     EXPECT_FALSE(result.scans[i].reason.empty());
   }
 }
@@ -279,7 +279,7 @@ TEST(FrontEnd, ExtremeOptionsOfTheChainStillMakeAMap) {
 TEST(FrontEnd, NeverLooksAtTheReferencePosesAndHasNoCorrections) {
   Log log = log_of(walk(4));
   const MapResult without = mapped(log);
-  for (Scan& position : log.scans) position.reference_pose = Pose2{99.0, -99.0, 1.0};
+  for (Scan& scan : log.scans) scan.reference_pose = Pose2{99.0, -99.0, 1.0};
   const MapResult with = mapped(log);
   expect_same_bits(with, without);
   for (const PlacedScan& placed : with.placed()) {

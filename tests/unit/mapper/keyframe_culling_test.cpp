@@ -14,7 +14,7 @@
 namespace shapemap {
 namespace {
 
-using test::KnownChain;
+using test::KnownGraph;
 using test::Laps;
 using test::two_laps;
 
@@ -38,8 +38,8 @@ std::vector<Pose2> poses_of(const MapResult& result) {
 
 TEST(RedundantKeyframes, AreEarlierKeyframesAtTheSamePlace) {
   const Laps& laps = two_laps();
-  const KnownChain known(laps);
-  const auto redundant = find_redundant_keyframes(known.chain, known.map, quick().robust, 1).of_keyframe;
+  const KnownGraph known(laps);
+  const auto redundant = find_redundant_keyframes(known.graph, known.map, quick().robust, 1).of_keyframe;
   ASSERT_EQ(redundant.size(), laps.truth.size());
   std::size_t found = 0;
   for (std::size_t b = 0; b < redundant.size(); ++b) {
@@ -58,15 +58,15 @@ TEST(RedundantKeyframes, AreEarlierKeyframesAtTheSamePlace) {
 
 TEST(RedundantKeyframes, TellARightMapFromOneThatIsFolded) {
   const Laps& laps = two_laps();
-  const KnownChain right(laps);
-  const RedundantKeyframes of_right = find_redundant_keyframes(right.chain, right.map, quick().robust, 1);
+  const KnownGraph right(laps);
+  const RedundantKeyframes of_right = find_redundant_keyframes(right.graph, right.map, quick().robust, 1);
   EXPECT_GT(of_right.num_again, test::kRingLap / 4);
   EXPECT_TRUE(of_right.are_of_right_map());
-  KnownChain folded(laps);
+  KnownGraph folded(laps);
   for (std::size_t b = test::kRingLap; b < laps.truth.size(); ++b) {  // the second lap, a bit further round
     folded.map.map_from_keyframe[b] = laps.truth[b - 5];
   }
-  const RedundantKeyframes of_folded = find_redundant_keyframes(folded.chain, folded.map, quick().robust, 1);
+  const RedundantKeyframes of_folded = find_redundant_keyframes(folded.graph, folded.map, quick().robust, 1);
   EXPECT_GT(of_folded.num_again, test::kRingLap / 4);
   EXPECT_FALSE(of_folded.are_of_right_map());
   EXPECT_THAT(of_right.is_in_doubt, testing::Each(false));
@@ -79,59 +79,59 @@ TEST(RedundantKeyframes, TellARightMapFromOneThatIsFolded) {
 
 TEST(RedundantKeyframes, AreNotForKeyframesInDoubt) {
   const Laps& laps = two_laps();
-  KnownChain known(laps);
-  const auto all = find_redundant_keyframes(known.chain, known.map, quick().robust, 1).of_keyframe;
+  KnownGraph known(laps);
+  const auto all = find_redundant_keyframes(known.graph, known.map, quick().robust, 1).of_keyframe;
   const auto first =
       std::find_if(all.begin(), all.end(), [](const auto& replacement) { return replacement.has_value(); });
   ASSERT_NE(first, all.end());
   const auto b = static_cast<std::size_t>(first - all.begin());
   known.map.loop_constrained[b] = false;
-  known.chain.edges[b].choice.margin = 0.01;  // another place fits as well
-  ASSERT_LT(edge_probability(known.chain.edges[b]), 0.6);
-  EXPECT_FALSE(find_redundant_keyframes(known.chain, known.map, quick().robust, 1).of_keyframe[b]);
+  known.graph.edges[b].choice.margin = 0.01;  // another place fits as well
+  ASSERT_LT(edge_probability(known.graph.edges[b]), 0.6);
+  EXPECT_FALSE(find_redundant_keyframes(known.graph, known.map, quick().robust, 1).of_keyframe[b]);
   known.map.loop_constrained[b] = true;
-  EXPECT_TRUE(find_redundant_keyframes(known.chain, known.map, quick().robust, 1).of_keyframe[b]);
+  EXPECT_TRUE(find_redundant_keyframes(known.graph, known.map, quick().robust, 1).of_keyframe[b]);
   known.map.edge_choice[b] = -1;
-  EXPECT_FALSE(find_redundant_keyframes(known.chain, known.map, quick().robust, 1).of_keyframe[b]);
+  EXPECT_FALSE(find_redundant_keyframes(known.graph, known.map, quick().robust, 1).of_keyframe[b]);
 }
 
 TEST(RetiredKeyframes, LeaveAChainThatSaysWhatTheMapDid) {
   const Laps& laps = two_laps();
-  KnownChain known(laps);
-  const auto redundant = find_redundant_keyframes(known.chain, known.map, quick().robust, 1).of_keyframe;
+  KnownGraph known(laps);
+  const auto redundant = find_redundant_keyframes(known.graph, known.map, quick().robust, 1).of_keyframe;
   MatchCandidate here;
   here.ref_from_query = {0.1, 0.2, 0.3};
   const std::size_t retired = static_cast<std::size_t>(
       std::find_if(redundant.begin(), redundant.end(), [](const auto& s) { return s.has_value(); }) -
       redundant.begin());
-  known.chain.attached.push_back({1000, retired, here});
+  known.graph.attached.push_back({1000, retired, here});
   LoopCandidates loops;
   loops.num_searched = laps.truth.size() - kKeyframesInUse;
-  cull_keyframes(redundant, quick(), known.map, known.chain, loops);
+  cull_keyframes(redundant, quick(), known.map, known.graph, loops);
 
   const auto num_retired = static_cast<std::size_t>(
       std::count_if(redundant.begin(), redundant.end(), [](const auto& s) { return s.has_value(); }));
-  ASSERT_EQ(known.chain.keyframes.size(), laps.truth.size() - num_retired);
-  ASSERT_EQ(known.chain.edges.size(), known.chain.keyframes.size() - 1);
-  EXPECT_EQ(known.chain.attached.size(), num_retired + 1);
-  EXPECT_EQ(loops.num_searched, known.chain.keyframes.size() - kKeyframesInUse);
+  ASSERT_EQ(known.graph.keyframes.size(), laps.truth.size() - num_retired);
+  ASSERT_EQ(known.graph.edges.size(), known.graph.keyframes.size() - 1);
+  EXPECT_EQ(known.graph.attached.size(), num_retired + 1);
+  EXPECT_EQ(loops.num_searched, known.graph.keyframes.size() - kKeyframesInUse);
 
   std::set<std::size_t> all;
-  for (const Keyframe& keyframe : known.chain.keyframes) all.insert(keyframe.scan_index);
+  for (const Keyframe& keyframe : known.graph.keyframes) all.insert(keyframe.scan_index);
   std::size_t num_settled = 0;
-  for (std::size_t i = 0; i < known.chain.edges.size(); ++i) {
-    const Pose2& a = laps.truth[known.chain.keyframes[i].scan_index];
-    const Pose2& b = laps.truth[known.chain.keyframes[i + 1].scan_index];
-    const PoseConstraint link = edge_constraint(known.chain, i, 0);
-    EXPECT_THAT(link.a_from_b, test::IsNearPose(inverse(a) * b, 1e-9, 1e-9));
-    if (!known.chain.edges[i].culled_covariance) continue;
+  for (std::size_t i = 0; i < known.graph.edges.size(); ++i) {
+    const Pose2& a = laps.truth[known.graph.keyframes[i].scan_index];
+    const Pose2& b = laps.truth[known.graph.keyframes[i + 1].scan_index];
+    const PoseConstraint edge = edge_constraint(known.graph, i, 0);
+    EXPECT_THAT(edge.a_from_b, test::IsNearPose(inverse(a) * b, 1e-9, 1e-9));
+    if (!known.graph.edges[i].culled_covariance) continue;
     ++num_settled;
-    EXPECT_EQ(edge_probability(known.chain.edges[i]), 1.0);
-    EXPECT_TRUE(link.covariance.allFinite());
+    EXPECT_EQ(edge_probability(known.graph.edges[i]), 1.0);
+    EXPECT_TRUE(edge.covariance.allFinite());
   }
   EXPECT_GT(num_settled, 0U);
-  for (const AttachedScan& scan : known.chain.attached) {
-    const Pose2 keyframe = laps.truth[known.chain.keyframes[scan.keyframe].scan_index];
+  for (const AttachedScan& scan : known.graph.attached) {
+    const Pose2 keyframe = laps.truth[known.graph.keyframes[scan.keyframe].scan_index];
     const bool is_mine = scan.scan_index == 1000;
     const Pose2 truth = is_mine ? laps.truth[retired] * here.ref_from_query : laps.truth[scan.scan_index];
     EXPECT_THAT(keyframe * scan.pose.ref_from_query, test::IsNearPose(truth, 0.10, 2 * kDegree));
@@ -139,23 +139,23 @@ TEST(RetiredKeyframes, LeaveAChainThatSaysWhatTheMapDid) {
   }
   EXPECT_EQ(all.size(), laps.truth.size());
   for (const LoopCandidate& loop : loops.candidates) {
-    const Pose2& a = laps.truth[known.chain.keyframes[loop.a].scan_index];
-    const Pose2& b = laps.truth[known.chain.keyframes[loop.b].scan_index];
+    const Pose2& a = laps.truth[known.graph.keyframes[loop.a].scan_index];
+    const Pose2& b = laps.truth[known.graph.keyframes[loop.b].scan_index];
     EXPECT_THAT(loop.a_from_b, test::IsNearPose(inverse(a) * b, 1e-9, 1e-9));
   }
 }
 
 TEST(RetiredKeyframes, NoneMeansThatNothingChanges) {
   const Laps& laps = two_laps();
-  KnownChain known(laps);
+  KnownGraph known(laps);
   LoopCandidates loops;
   loops.candidates.push_back({3, 60, {1, 2, 3}, Eigen::Matrix3d::Identity(), 1.5});
   loops.num_searched = 70;
   loops.num_bridged = 69;
   known.map.constraints.clear();
   const std::vector<std::optional<ReplacementKeyframe>> none(laps.truth.size());
-  cull_keyframes(none, quick(), known.map, known.chain, loops);
-  EXPECT_EQ(known.chain.keyframes.size(), laps.truth.size());
+  cull_keyframes(none, quick(), known.map, known.graph, loops);
+  EXPECT_EQ(known.graph.keyframes.size(), laps.truth.size());
   ASSERT_EQ(loops.candidates.size(), 1U);
   EXPECT_EQ(loops.candidates[0].a, 3U);
   EXPECT_EQ(loops.candidates[0].b, 60U);

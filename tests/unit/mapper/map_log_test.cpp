@@ -38,12 +38,12 @@ Log log_of(const test::World& world, const std::vector<Pose2>& poses, const test
 }
 
 Scan blind() {
-  Scan position = test::scan_of(test::uneven_room(), {});
-  for (float& range_m : position.sweeps[0].ranges_m) range_m = std::nanf("");
-  return position;
+  Scan scan = test::scan_of(test::uneven_room(), {});
+  for (float& range_m : scan.sweeps[0].ranges_m) range_m = std::nanf("");
+  return scan;
 }
 
-test::Scanner four_sub_scans() {
+test::Scanner four_sweeps() {
   test::Scanner scanner;
   scanner.num_sweeps = 4;
   scanner.num_beams = 200;
@@ -56,9 +56,9 @@ MapResult mapped(const Log& log, const MappingOptions& options = test::paper_opt
   return map_log(log, options, nobody);
 }
 
-std::vector<int> fragments_of(const MapResult& result) {
+std::vector<int> components_of(const MapResult& result) {
   std::vector<int> components;
-  for (const ScanResult& position : result.scans) components.push_back(position.component);
+  for (const ScanResult& scan : result.scans) components.push_back(scan.component);
   return components;
 }
 
@@ -111,8 +111,8 @@ TEST(MapLog, LooksBackNoFartherThanTheTargetScans) {
   for (std::size_t i = 1; i < 4; ++i) {
     const ScanMatch pair =
         align(test::shape_of(log.scans[i - 1], options), test::shape_of(log.scans[i], options), options.align);
-    EXPECT_THAT(result.scans[i].alignment.ref_from_query, IsNearPose(pair.ref_from_query, 1e-9, 1e-9)) << i;
-    EXPECT_EQ(result.scans[i].alignment.overlap, pair.overlap) << i;
+    EXPECT_THAT(result.scans[i].match.ref_from_query, IsNearPose(pair.ref_from_query, 1e-9, 1e-9)) << i;
+    EXPECT_EQ(result.scans[i].match.overlap, pair.overlap) << i;
   }
 }
 
@@ -121,8 +121,8 @@ TEST(MapLog, PosesAreTheAlignmentsInARow) {
   ASSERT_EQ(result.placed().size(), 6U);
   Pose2 map_from_robot;
   for (std::size_t i = 1; i < 6; ++i) {
-    ASSERT_TRUE(result.scans[i].alignment.ok());
-    map_from_robot = map_from_robot * result.scans[i].alignment.ref_from_query;
+    ASSERT_TRUE(result.scans[i].match.ok());
+    map_from_robot = map_from_robot * result.scans[i].match.ref_from_query;
     EXPECT_THAT(result.placed()[i].map_from_robot, IsNearPose(map_from_robot, 1e-12, 1e-12)) << i;
   }
 }
@@ -131,8 +131,8 @@ TEST(MapLog, APositionWithoutReturnsIsInNoFragmentAndTheNextStartsOne) {
   Log log = log_of(test::cluttered_room(2), walk(4));
   log.scans.insert(log.scans.begin() + 2, blind());
   const MapResult result = mapped(log);
-  EXPECT_THAT(fragments_of(result), ElementsAre(0, 0, -1, 1, 1));
-  EXPECT_EQ(result.scans[2].alignment.status, MatchStatus::kNoShape);
+  EXPECT_THAT(components_of(result), ElementsAre(0, 0, -1, 1, 1));
+  EXPECT_EQ(result.scans[2].match.status, MatchStatus::kNoShape);
   EXPECT_EQ(result.scans[2].reason, "only 0 shape points, 10 are needed");
   EXPECT_FALSE(result.scans[2].starts_component);
   EXPECT_TRUE(result.scans[3].starts_component);
@@ -147,16 +147,16 @@ TEST(MapLog, OfBlindPositionsIsNoMapButAReportOfEach) {
   EXPECT_TRUE(result.components.empty());
   EXPECT_EQ(result.largest_component, -1);
   ASSERT_EQ(result.scans.size(), 3U);
-  for (const ScanResult& position : result.scans) EXPECT_FALSE(position.reason.empty());
+  for (const ScanResult& scan : result.scans) EXPECT_FALSE(scan.reason.empty());
 }
 
 TEST(MapLog, APositionThatIsNotTrustedStartsAFragmentAndSaysWhy) {
   MappingOptions options = test::paper_options();
   options.align.trust.min_correspondences = 100000;
   const MapResult result = mapped(log_of(test::cluttered_room(2), walk(3)), options);
-  EXPECT_THAT(fragments_of(result), ElementsAre(0, 1, 2));
-  EXPECT_EQ(result.scans[1].alignment.status, MatchStatus::kTooFewCorrespondences);
-  EXPECT_EQ(result.scans[1].reason, result.scans[1].alignment.reason);
+  EXPECT_THAT(components_of(result), ElementsAre(0, 1, 2));
+  EXPECT_EQ(result.scans[1].match.status, MatchStatus::kTooFewCorrespondences);
+  EXPECT_EQ(result.scans[1].reason, result.scans[1].match.reason);
   EXPECT_FALSE(result.scans[1].reason.empty());
   EXPECT_TRUE(result.scans[0].reason.empty());
 }
@@ -224,7 +224,7 @@ TEST(MapLog, StoppedAtOnceHasNothing) {
 }
 
 TEST(MapLog, EveryPositionHasACorrectionPerSubScan) {
-  const Log log = log_of(test::cluttered_room(2), walk(3), four_sub_scans());
+  const Log log = log_of(test::cluttered_room(2), walk(3), four_sweeps());
   for (const bool decoupled : {false, true}) {
     MappingOptions options = test::paper_options();
     options.align.icp.decoupled = decoupled;
@@ -240,7 +240,7 @@ TEST(MapLog, EveryPositionHasACorrectionPerSubScan) {
 }
 
 TEST(MapLog, IsTheSameToTheBitForAnyNumberOfThreads) {
-  const Log log = log_of(test::cluttered_room(4), walk(4), four_sub_scans());
+  const Log log = log_of(test::cluttered_room(4), walk(4), four_sweeps());
   MappingOptions options = test::paper_options();
   options.align.icp.decoupled = true;
   options.run.threads = 1;
@@ -260,7 +260,7 @@ TEST(MapLog, IsTheSameToTheBitForAnyNumberOfThreads) {
 TEST(MapLog, NeverLooksAtTheReferencePoses) {
   Log log = log_of(test::cluttered_room(2), walk(3));
   const MapResult without = mapped(log);
-  for (Scan& position : log.scans) position.reference_pose = Pose2{99.0, -99.0, 1.0};
+  for (Scan& scan : log.scans) scan.reference_pose = Pose2{99.0, -99.0, 1.0};
   const MapResult with = mapped(log);
   ASSERT_EQ(with.placed().size(), without.placed().size());
   for (std::size_t i = 0; i < with.placed().size(); ++i) {

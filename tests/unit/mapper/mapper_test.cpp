@@ -51,12 +51,12 @@ std::vector<std::size_t> sizes_of(const MapResult& result) {
 /// Each position that was looked at is in one fragment, and all of it can be trusted to be there.
 void expect_whole(const MapResult& result, const Log& log) {
   ASSERT_LE(result.scans.size(), log.scans.size());
-  std::map<std::size_t, int> fragment_of;
+  std::map<std::size_t, int> component_of;
   for (std::size_t f = 0; f < result.components.size(); ++f) {
     ASSERT_FALSE(result.components[f].scans.empty());
     EXPECT_THAT(result.components[f].scans[0].map_from_robot, test::IsNearPose(Pose2{}, 1e-12, 1e-12));
     for (const PlacedScan& placed : result.components[f].scans) {
-      EXPECT_TRUE(fragment_of.emplace(placed.scan_index, static_cast<int>(f)).second) << "placed twice";
+      EXPECT_TRUE(component_of.emplace(placed.scan_index, static_cast<int>(f)).second) << "placed twice";
       const Pose2& pose = placed.map_from_robot;
       EXPECT_TRUE(std::isfinite(pose.x_m + pose.y_m + pose.theta_rad));
       EXPECT_EQ(placed.robot_from_sweep.size(), log.scans[placed.scan_index].sweeps.size());
@@ -64,10 +64,10 @@ void expect_whole(const MapResult& result, const Log& log) {
   }
   for (std::size_t i = 0; i < result.scans.size(); ++i) {
     EXPECT_EQ(result.scans[i].scan_index, i);
-    ASSERT_EQ(fragment_of.count(i), 1U) << "all of these scans have shape";
-    EXPECT_EQ(result.scans[i].component, fragment_of[i]);
+    ASSERT_EQ(component_of.count(i), 1U) << "all of these scans have shape";
+    EXPECT_EQ(result.scans[i].component, component_of[i]);
   }
-  EXPECT_EQ(fragment_of.size(), result.scans.size());
+  EXPECT_EQ(component_of.size(), result.scans.size());
   for (const ClosedLoop& loop : result.loops) {
     EXPECT_LT(loop.a, loop.b);
     EXPECT_LT(loop.b, result.scans.size());
@@ -120,7 +120,7 @@ TEST(RobustMap, WithoutLoopsIsTheChainAsItIs) {
   EXPECT_TRUE(result.loops.empty());
   const std::vector<Pose2> poses = poses_of(result.components.at(0));
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    const Pose2 chained = poses[i - 1] * result.scans[i].alignment.ref_from_query;
+    const Pose2 chained = poses[i - 1] * result.scans[i].match.ref_from_query;
     EXPECT_THAT(poses[i], test::IsNearPose(chained, 1e-9, 1e-9));
     EXPECT_FALSE(result.scans[i].loop_constrained);
   }
@@ -172,7 +172,7 @@ TEST(RobustMap, ChainsNothingFromOneLogToTheNext) {
   ASSERT_EQ(mapped(log, options).components.size(), 1U);
   log.starts = {2, 4};
   EXPECT_THAT(sizes_of(mapped(log, options)), ElementsAre(2, 2, 1));
-  log.scans.insert(log.scans.begin() + 4, test::blind_position());  // the log starts blind
+  log.scans.insert(log.scans.begin() + 4, test::blind_scan());  // the log starts blind
   EXPECT_THAT(sizes_of(mapped(log, options)), ElementsAre(2, 2, 1));
 }
 

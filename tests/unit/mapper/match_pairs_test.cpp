@@ -45,9 +45,9 @@ std::vector<ScanPair> all_pairs(std::size_t times) {
 
 TEST(AlignPairs, FindsEveryPair) {
   for (const AlignedPair& result : aligned(log_of(kPoses), all_pairs(1))) {
-    EXPECT_EQ(result.alignment.status, MatchStatus::kOk) << result.alignment.reason;
+    EXPECT_EQ(result.match.status, MatchStatus::kOk) << result.match.reason;
     const Pose2 truth = true_pose(result.pair.reference, result.pair.query);
-    EXPECT_THAT(result.alignment.ref_from_query, IsNearPose(truth, 0.03, 1 * kDegree));
+    EXPECT_THAT(result.match.ref_from_query, IsNearPose(truth, 0.03, 1 * kDegree));
     EXPECT_FALSE(result.given);
     EXPECT_FALSE(result.refined);
   }
@@ -62,9 +62,9 @@ TEST(AlignPairs, AreTheSameForAnyNumberOfThreadsAndWhateverCameBefore) {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     EXPECT_EQ(one[i].pair.reference, pairs[i].reference);
     EXPECT_EQ(one[i].pair.query, pairs[i].query);
-    EXPECT_THAT(one[i].alignment.ref_from_query, HasSameBits(three[i].alignment.ref_from_query));
-    EXPECT_THAT(one[i].alignment.ref_from_query, HasSameBits(one[i % 9].alignment.ref_from_query));
-    EXPECT_EQ(one[i].alignment.probability, three[i].alignment.probability);
+    EXPECT_THAT(one[i].match.ref_from_query, HasSameBits(three[i].match.ref_from_query));
+    EXPECT_THAT(one[i].match.ref_from_query, HasSameBits(one[i % 9].match.ref_from_query));
+    EXPECT_EQ(one[i].match.probability, three[i].match.probability);
   }
 }
 
@@ -77,7 +77,7 @@ TEST(AlignPairs, JudgesAGivenPoseAsItIsAndRefined) {
     ASSERT_TRUE(results[i].refined);
     EXPECT_THAT(results[i].given->ref_from_query, HasSameBits(*results[i].pair.given_ref_from_query));
     EXPECT_THAT(results[i].refined->ref_from_query, IsNearPose(truth, 0.03, 1 * kDegree));
-    EXPECT_THAT(results[i].alignment.ref_from_query, HasSameBits(results[2].alignment.ref_from_query));
+    EXPECT_THAT(results[i].match.ref_from_query, HasSameBits(results[2].match.ref_from_query));
     EXPECT_GT(results[i].given->partners, 50);
     const RankedPose& given = *results[i].given;
     EXPECT_NEAR(given.agree + given.crossed + given.hidden + given.unclear + given.outside, 1.0, 1e-12);
@@ -92,12 +92,12 @@ TEST(AlignPairs, SayWhichScanHasNoShape) {
   for (float& range_m : log.scans[1].sweeps[0].ranges_m) range_m = std::nanf("");
   const std::vector<AlignedPair> results = aligned(log, {{0, 1, Pose2{}}, {1, 0, {}}});
   for (const AlignedPair& result : results) {
-    EXPECT_EQ(result.alignment.status, MatchStatus::kNoShape);
+    EXPECT_EQ(result.match.status, MatchStatus::kNoShape);
     EXPECT_FALSE(result.given);
-    EXPECT_TRUE(result.alignment.ranked.empty());
+    EXPECT_TRUE(result.match.ranked.empty());
   }
-  EXPECT_THAT(results[0].alignment.reason, ::testing::StartsWith("the query has only 0 shape points"));
-  EXPECT_THAT(results[1].alignment.reason, ::testing::StartsWith("the reference has only 0 shape points"));
+  EXPECT_THAT(results[0].match.reason, ::testing::StartsWith("the query has only 0 shape points"));
+  EXPECT_THAT(results[1].match.reason, ::testing::StartsWith("the reference has only 0 shape points"));
 }
 
 TEST(AlignPairs, RefuseAnIndexBeyondItsLog) {

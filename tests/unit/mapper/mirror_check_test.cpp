@@ -24,9 +24,9 @@ Walk walk(int num_scans, double handedness, double slip_rad, double turn_rad) {
   double heading_rad = 0.0;
   double recorded_rad = 0.0;
   for (int i = 0; i < num_scans; ++i) {
-    Scan position;
-    position.recorded_heading_rad = wrap_angle(recorded_rad);
-    walk.log.scans.push_back(position);
+    Scan scan;
+    scan.recorded_heading_rad = wrap_angle(recorded_rad);
+    walk.log.scans.push_back(scan);
     PlacedScan placed;
     placed.scan_index = static_cast<std::size_t>(i);
     placed.map_from_robot.theta_rad = wrap_angle(heading_rad);
@@ -59,7 +59,7 @@ TEST(MirrorCheck, SaysNothingWithoutHeadingsOrWithFewTurns) {
   Walk some = walk(6, -1.0, 0.0, 20 * kDegree);
   EXPECT_FALSE(compare_turns(some.log, some.placed).is_mirrored());
   Walk none = walk(400, -1.0, 0.0, 20 * kDegree);
-  for (Scan& position : none.log.scans) position.recorded_heading_rad.reset();
+  for (Scan& scan : none.log.scans) scan.recorded_heading_rad.reset();
   EXPECT_EQ(compare_turns(none.log, none.placed).num_opposite, 0U);
 }
 

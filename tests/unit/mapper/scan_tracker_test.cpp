@@ -55,7 +55,7 @@ TEST(ScanTracker, AJumpMakesAKeyframe) {
   }
   tracker.start(view_at(ahead(0.0)));
   EXPECT_FALSE(tracker.follow(test::view_from(test::strange_place(3), {}))) << "another place altogether";
-  EXPECT_FALSE(tracker.follow(test::view_of(test::blind_position())));
+  EXPECT_FALSE(tracker.follow(test::view_of(test::blind_scan())));
 }
 
 TEST(ScanTracker, WithoutAKeyframeOrWithAStepOfNoneAttachesNothing) {
@@ -175,7 +175,7 @@ Log dense_log(std::size_t count) {
 
 std::size_t num_keyframes(const MapResult& result) {
   std::size_t count = 0;
-  for (const ScanResult& position : result.scans) count += position.is_keyframe ? 1 : 0;
+  for (const ScanResult& scan : result.scans) count += scan.is_keyframe ? 1 : 0;
   return count;
 }
 

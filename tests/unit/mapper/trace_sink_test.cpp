@@ -19,7 +19,7 @@ using ::testing::ElementsAre;
 constexpr std::size_t kCount = 6;
 constexpr std::size_t kBlind = 3;  ///< of these positions, the one without returns
 
-Log walk_with_a_blind_position() {
+Log walk_with_a_blind_scan() {
   Log log;
   for (std::size_t i = 0; i < kCount; ++i) {
     const auto k = static_cast<double>(i);
@@ -39,7 +39,7 @@ MappingOptions options_of(Method method) {
 
 /// Keeps copies of what it is shown.
 struct Recorder : TraceSink {
-  struct Link {
+  struct Edge {
     std::size_t reference, query, num_own;
     double insufficient_view;
     std::vector<MatchCandidate> candidates;
@@ -49,7 +49,7 @@ struct Recorder : TraceSink {
     num_points.push_back(points.size());
   }
   void on_alignment(const TracedAlignment& shown) override {
-    alignments.push_back(shown.alignment);
+    matches.push_back(shown.match);
     steps.push_back(shown.steps);
     targets.push_back(shown.targets);
     queries.push_back(shown.query_index);
@@ -60,10 +60,10 @@ struct Recorder : TraceSink {
   void on_choice(const TracedChoice& choice) override { choices.push_back(choice); }
 
   std::vector<std::size_t> indices, num_points, queries;
-  std::vector<ScanMatch> alignments;
+  std::vector<ScanMatch> matches;
   std::vector<AlignTrace> steps;
   std::vector<std::vector<TracedTarget>> targets;
-  std::vector<Link> edges;
+  std::vector<Edge> edges;
   std::vector<TracedChoice> choices;
 };
 
@@ -73,7 +73,7 @@ MapResult mapped(const Log& log, Method method, TraceSink* sink) {
 }
 
 TEST(TraceSink, LookingOnChangesNoBit) {
-  const Log log = walk_with_a_blind_position();
+  const Log log = walk_with_a_blind_scan();
   for (const Method method : {Method::kPaper, Method::kRobust}) {
     Recorder recorder;
     const MapResult with = mapped(log, method, &recorder);
@@ -94,19 +94,19 @@ TEST(TraceSink, LookingOnChangesNoBit) {
 
 TEST(TraceSink, SeesEachAlignmentOfThePapersMethodWithItsTargets) {
   Recorder recorder;
-  const MapResult result = mapped(walk_with_a_blind_position(), Method::kPaper, &recorder);
+  const MapResult result = mapped(walk_with_a_blind_scan(), Method::kPaper, &recorder);
   EXPECT_TRUE(recorder.edges.empty());
   EXPECT_THAT(recorder.queries, ElementsAre(1, 2, 5));  // 4 has nothing before it
   for (std::size_t k = 0; k < recorder.queries.size(); ++k) {
-    const ScanMatch& alignment = recorder.alignments[k];
+    const ScanMatch& match = recorder.matches[k];
     const AlignTrace& steps = recorder.steps[k];
-    EXPECT_THAT(alignment.ref_from_query, HasSameBits(result.scans[recorder.queries[k]].alignment.ref_from_query));
+    EXPECT_THAT(match.ref_from_query, HasSameBits(result.scans[recorder.queries[k]].match.ref_from_query));
     ASSERT_GE(steps.best_rotation, 0);
     const RotationMatch& best = steps.rotations[static_cast<std::size_t>(steps.best_rotation)];
-    EXPECT_THAT(best.target_from_query(), HasSameBits(alignment.shape_ref_from_query));
+    EXPECT_THAT(best.target_from_query(), HasSameBits(match.shape_ref_from_query));
     EXPECT_GE(best.lcs.size(), best.spread.size());
-    EXPECT_EQ(best.translation.kept.size(), static_cast<std::size_t>(alignment.num_correspondences));
-    EXPECT_THAT(steps.icp.steps.back(), HasSameBits(alignment.icp_ref_from_query));
+    EXPECT_EQ(best.translation.kept.size(), static_cast<std::size_t>(match.num_correspondences));
+    EXPECT_THAT(steps.icp.steps.back(), HasSameBits(match.icp_ref_from_query));
   }
   ASSERT_EQ(recorder.targets[1].size(), 2U);
   EXPECT_EQ(recorder.targets[1][0].scan_index, 0U);
@@ -117,22 +117,22 @@ TEST(TraceSink, SeesEachAlignmentOfThePapersMethodWithItsTargets) {
 
 TEST(TraceSink, SeesWhatTheRobustMethodChoosesFrom) {
   Recorder recorder;
-  const MapResult result = mapped(walk_with_a_blind_position(), Method::kRobust, &recorder);
-  EXPECT_TRUE(recorder.alignments.empty());
+  const MapResult result = mapped(walk_with_a_blind_scan(), Method::kRobust, &recorder);
+  EXPECT_TRUE(recorder.matches.empty());
   ASSERT_EQ(recorder.edges.size(), 4U);
   ASSERT_EQ(recorder.choices.size(), 4U);
   EXPECT_EQ(recorder.edges[2].reference, 2U);  // across the blind one
   EXPECT_EQ(recorder.edges[2].query, 4U);
   for (std::size_t k = 0; k < recorder.edges.size(); ++k) {
-    const Recorder::Link& link = recorder.edges[k];
+    const Recorder::Edge& edge = recorder.edges[k];
     const TracedChoice& choice = recorder.choices[k];
-    EXPECT_EQ(choice.reference_index, link.reference);
-    EXPECT_EQ(choice.query_index, link.query);
-    EXPECT_GT(link.num_own, 0U);
-    EXPECT_LE(link.num_own, link.candidates.size());
-    ASSERT_LT(choice.candidate, link.candidates.size());
-    EXPECT_THAT(link.candidates[choice.candidate].ref_from_query,
-                HasSameBits(result.scans[link.query].alignment.ranked[0].ref_from_query));
+    EXPECT_EQ(choice.reference_index, edge.reference);
+    EXPECT_EQ(choice.query_index, edge.query);
+    EXPECT_GT(edge.num_own, 0U);
+    EXPECT_LE(edge.num_own, edge.candidates.size());
+    ASSERT_LT(choice.candidate, edge.candidates.size());
+    EXPECT_THAT(edge.candidates[choice.candidate].ref_from_query,
+                HasSameBits(result.scans[edge.query].match.ranked[0].ref_from_query));
   }
 }
 
@@ -150,11 +150,11 @@ TEST(TraceSink, SeesHowLittleNarrowScansSeeAndThatCountsInTheResult) {
   RunObserver nobody;
   const MapResult result = map_log(log, options, nobody, &recorder);
   ASSERT_EQ(recorder.edges.size(), 1U);
-  const Recorder::Link& link = recorder.edges[0];
-  EXPECT_NEAR(link.insufficient_view, 0.2, 0.05);
+  const Recorder::Edge& edge = recorder.edges[0];
+  EXPECT_NEAR(edge.insufficient_view, 0.2, 0.05);
   const TracedChoice& choice = recorder.choices.at(0);
-  const double match = match_probability(link.candidates.at(choice.candidate), choice.margin);
-  EXPECT_EQ(result.scans[1].alignment.probability, odometry_probability(match, link.insufficient_view));
+  const double match = match_probability(edge.candidates.at(choice.candidate), choice.margin);
+  EXPECT_EQ(result.scans[1].match.probability, odometry_probability(match, edge.insufficient_view));
 }
 
 TEST(TraceSink, WhatItThrowsEndsTheRun) {
@@ -163,7 +163,7 @@ TEST(TraceSink, WhatItThrowsEndsTheRun) {
       if (index == 2) throw std::runtime_error("full");
     }
   };
-  const Log log = walk_with_a_blind_position();
+  const Log log = walk_with_a_blind_scan();
   for (const Method method : {Method::kPaper, Method::kRobust}) {
     Full sink;
     EXPECT_THROW(mapped(log, method, &sink), std::runtime_error);

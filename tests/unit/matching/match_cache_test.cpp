@@ -60,7 +60,7 @@ Log two_rounds() {
   for (std::size_t i = 0; i < 34; ++i) {
     const double angle_rad = 2 * kPi * static_cast<double>(i) / 16.0;
     const Pose2 pose{0.9 * std::cos(angle_rad), 0.8 * std::sin(angle_rad), wrap_angle(1.7 * angle_rad)};
-    log.scans.push_back(i == 5 ? test::blind_position() : test::scan_of(world, pose, test::half_circle(), rng));
+    log.scans.push_back(i == 5 ? test::blind_scan() : test::scan_of(world, pose, test::half_circle(), rng));
     log.scans.back().timestamp_s = static_cast<double>(i);
   }
   return log;

@@ -72,7 +72,7 @@ TEST(BestDistinct, OfManyAreApartAndCoverAllOthers) {
 
 TEST(BestDistinct, OfNoneIsNone) { EXPECT_THAT(best_distinct({}, 5), IsEmpty()); }
 
-TEST(PoseHypotheses, AreDistinctBestFirstAndNoMoreThanAreKept) {
+TEST(FindCandidates, AreDistinctBestFirstAndNoMoreThanAreKept) {
   const ScanView reference = test::view_from(test::cluttered_room(1), {});
   const ScanView query = test::view_from(test::cluttered_room(1), {0.5, 0.3, 2.0}, test::full_circle(), 2);
   for (const int kept : {1, 3, 10}) {
@@ -91,7 +91,7 @@ TEST(PoseHypotheses, AreDistinctBestFirstAndNoMoreThanAreKept) {
   }
 }
 
-TEST(PoseHypotheses, FindAPoseWithoutHelpOfTangentPeaks) {
+TEST(FindCandidates, FindAPoseWithoutHelpOfTangentPeaks) {
   const ScanView reference = test::view_from(test::cluttered_room(2), {});
   const ScanView query = test::view_from(test::cluttered_room(2), {0.4, -0.2, -1.3}, test::full_circle(), 2);
   MatchSearchOptions options;
@@ -102,8 +102,8 @@ TEST(PoseHypotheses, FindAPoseWithoutHelpOfTangentPeaks) {
   EXPECT_THAT(poses[0].ref_from_query, IsNearPose(Pose2{0.4, -0.2, -1.3}, 0.05, kDegree));
 }
 
-TEST(PoseHypotheses, WithAnEmptyScanAreNone) {
-  const ScanView nothing = test::view_of(test::blind_position());
+TEST(FindCandidates, WithAnEmptyScanAreNone) {
+  const ScanView nothing = test::view_of(test::blind_scan());
   const ScanView room = test::view_from(test::cluttered_room(2), {});
   EXPECT_THAT(find_candidates(nothing, room, {}), IsEmpty());
   EXPECT_THAT(find_candidates(room, nothing, {}), IsEmpty());

@@ -17,9 +17,9 @@ using test::HasSameBits;
 using test::IsNanPose;
 using test::IsNearPose;
 
-bool is_right(const ScanMatch& alignment, const Pose2& truth) {
-  return alignment.has_pose() && (alignment.ref_from_query.translation() - truth.translation()).norm() < 0.10 &&
-         angle_between(alignment.ref_from_query.theta_rad, truth.theta_rad) < 2 * kDegree;
+bool is_right(const ScanMatch& match, const Pose2& truth) {
+  return match.has_pose() && (match.ref_from_query.translation() - truth.translation()).norm() < 0.10 &&
+         angle_between(match.ref_from_query.theta_rad, truth.theta_rad) < 2 * kDegree;
 }
 
 TEST(RobustAlign, FindsAnyHeadingAndOffsetInAFurnishedRoom) {
@@ -79,30 +79,30 @@ TEST(RobustAlign, IsNotSureWhereAlongABareCorridorItStands) {
 }
 
 TEST(RobustAlign, SaysWhyThereIsNoPose) {
-  const ScanView nothing = test::view_of(test::blind_position());
+  const ScanView nothing = test::view_of(test::blind_scan());
   const ScanView room = test::view_from(test::cluttered_room(1), {});
-  for (const ScanMatch& alignment :
+  for (const ScanMatch& match :
        {match_scans(nothing, room, {}), match_scans(room, nothing, {}), match_scans(nothing, nothing, {})}) {
-    EXPECT_EQ(alignment.status, MatchStatus::kNoCorrespondences);
-    EXPECT_FALSE(alignment.has_pose());
-    EXPECT_THAT(alignment.ref_from_query, IsNanPose());
-    EXPECT_FALSE(alignment.reason.empty());
+    EXPECT_EQ(match.status, MatchStatus::kNoCorrespondences);
+    EXPECT_FALSE(match.has_pose());
+    EXPECT_THAT(match.ref_from_query, IsNanPose());
+    EXPECT_FALSE(match.reason.empty());
   }
 }
 
-void expect_consistent(const ScanMatch& alignment) {
-  const Pose2& pose = alignment.ref_from_query;
-  if (alignment.has_pose()) {
+void expect_consistent(const ScanMatch& match) {
+  const Pose2& pose = match.ref_from_query;
+  if (match.has_pose()) {
     EXPECT_TRUE(std::isfinite(pose.x_m) && std::isfinite(pose.y_m) && std::isfinite(pose.theta_rad));
-    EXPECT_TRUE(alignment.probability >= 0.0 && alignment.probability <= 1.0);
-    EXPECT_TRUE(alignment.covariance.allFinite());
-    ASSERT_FALSE(alignment.ranked.empty());
-    EXPECT_THAT(alignment.ranked[0].ref_from_query, HasSameBits(pose));
+    EXPECT_TRUE(match.probability >= 0.0 && match.probability <= 1.0);
+    EXPECT_TRUE(match.covariance.allFinite());
+    ASSERT_FALSE(match.ranked.empty());
+    EXPECT_THAT(match.ranked[0].ref_from_query, HasSameBits(pose));
   } else {
     EXPECT_THAT(pose, IsNanPose());
   }
-  EXPECT_EQ(alignment.ok(), alignment.reason.empty()) << alignment.reason;
-  for (const RankedPose& ranked : alignment.ranked) {
+  EXPECT_EQ(match.ok(), match.reason.empty()) << match.reason;
+  for (const RankedPose& ranked : match.ranked) {
     EXPECT_TRUE(ranked.agree >= 0.0 && ranked.crossed >= 0.0 && ranked.agree + ranked.crossed <= 1.0 + 1e-9);
     EXPECT_TRUE(std::isfinite(ranked.score));
   }
@@ -121,13 +121,13 @@ TEST(RobustAlign, TakesScansOfOneBeamOrWithReadingsThatAreNone) {
                                              std::vector<float>(180, 1e-6F),
                                              std::vector<float>(180, 999.0F),
                                              std::vector<float>(180, 1.0F)}) {
-    Scan position;
+    Scan scan;
     Sweep sweep;
     sweep.ranges_m = ranges_m;
     sweep.first_angle_rad = -1.0;
     sweep.angle_step_rad = kDegree;
-    position.sweeps.push_back(sweep);
-    const ScanView odd = test::view_of(position);
+    scan.sweeps.push_back(sweep);
+    const ScanView odd = test::view_of(scan);
     expect_consistent(match_scans(odd, room, {}));
     expect_consistent(match_scans(room, odd, {}));
     expect_consistent(match_scans(odd, odd, {}));
@@ -190,7 +190,7 @@ TEST(RobustAlign, IsTheSameToTheBitTheSecondTime) {
 }
 
 /// A pose that is held in all directions and that most points agree with.
-MatchCandidate good_hypothesis(const Pose2& pose, double score) {
+MatchCandidate good_candidate(const Pose2& pose, double score) {
   MatchCandidate candidate;
   candidate.ref_from_query = pose;
   candidate.score = score;
@@ -203,28 +203,28 @@ MatchCandidate good_hypothesis(const Pose2& pose, double score) {
 }
 
 TEST(Judged, RanksTheChosenOneFirst) {
-  const std::vector<MatchCandidate> poses{good_hypothesis({1, 0, 0}, 4.0), good_hypothesis({2, 0, 0}, 3.0),
-                                          good_hypothesis({3, 0, 0}, 2.0), good_hypothesis({4, 0, 0}, 2.5)};
-  const ScanMatch alignment = judged(poses, 1, 1.5, {0.0, 0.0, 10.0});
-  EXPECT_TRUE(alignment.ok());
-  EXPECT_THAT(alignment.ref_from_query, HasSameBits(Pose2{2, 0, 0}));
+  const std::vector<MatchCandidate> poses{good_candidate({1, 0, 0}, 4.0), good_candidate({2, 0, 0}, 3.0),
+                                          good_candidate({3, 0, 0}, 2.0), good_candidate({4, 0, 0}, 2.5)};
+  const ScanMatch match = judged(poses, 1, 1.5, {0.0, 0.0, 10.0});
+  EXPECT_TRUE(match.ok());
+  EXPECT_THAT(match.ref_from_query, HasSameBits(Pose2{2, 0, 0}));
   std::vector<double> places_m;
-  for (const RankedPose& ranked : alignment.ranked) places_m.push_back(ranked.ref_from_query.x_m);
+  for (const RankedPose& ranked : match.ranked) places_m.push_back(ranked.ref_from_query.x_m);
   EXPECT_EQ(places_m, (std::vector<double>{2.0, 1.0, 4.0, 3.0})) << "and the others best first";
-  EXPECT_DOUBLE_EQ(alignment.ranked[0].agree, 0.9);
-  EXPECT_EQ(alignment.probability, match_probability(poses[1], 1.5));
-  expect_consistent(alignment);
+  EXPECT_DOUBLE_EQ(match.ranked[0].agree, 0.9);
+  EXPECT_EQ(match.probability, match_probability(poses[1], 1.5));
+  expect_consistent(match);
 }
 
 TEST(Judged, TakesTheProbabilityThatIsKnownBetter) {
-  const std::vector<MatchCandidate> good{good_hypothesis({1, 0, 0}, 4.0)};
+  const std::vector<MatchCandidate> good{good_candidate({1, 0, 0}, 4.0)};
   EXPECT_EQ(judged(good, 0, kFullMargin, {0.5, 0.0, 10.0}, 0.75).probability, 0.75);
   EXPECT_EQ(judged(good, 0, kFullMargin, {0.5, 0.0, 10.0}, 0.75).status, MatchStatus::kOk);
   EXPECT_EQ(judged(good, 0, kFullMargin, {0.5, 0.0, 10.0}, 0.25).status, MatchStatus::kAmbiguous);
 }
 
 TEST(Judged, GivesEachVerdictForItsReason) {
-  const std::vector<MatchCandidate> good{good_hypothesis({1, 0, 0}, 4.0)};
+  const std::vector<MatchCandidate> good{good_candidate({1, 0, 0}, 4.0)};
   EXPECT_EQ(judged(good, 0, kFullMargin, {1.0, 0.0, 10.0}).status, MatchStatus::kAmbiguous);
   EXPECT_EQ(judged(good, 0, kFullMargin, {0.0, 0.95, 10.0}).status, MatchStatus::kTooLittleOverlap);
   EXPECT_EQ(judged({}, 0, 0.0, {}).status, MatchStatus::kNoCorrespondences);

@@ -80,8 +80,8 @@ class Speed : public testing::Test {
 // look at more may raise its bound.
 
 TEST_F(Speed, OfAView) {
-  const Scan position = test::scan_of(world_, {}, test::half_circle());
-  EXPECT_LT(length_of([&] { test::view_of(position); }), 1.25);
+  const Scan scan = test::scan_of(world_, {}, test::half_circle());
+  EXPECT_LT(length_of([&] { test::view_of(scan); }), 1.25);
 }
 
 TEST_F(Speed, OfRotationHypotheses) {

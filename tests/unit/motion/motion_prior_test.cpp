@@ -91,7 +91,7 @@ TEST(MotionPrior, AStepOfNoLengthHasNoDirection) {
   EXPECT_LT(prior.surprise({0.5, 0.0, 0.0}) + 2.0, prior.surprise({-0.5, 0.0, 0.0}));
 }
 
-TEST(UsualHypotheses, AreThoseOfAnyOtherSearchWhereNothingIsKnown) {
+TEST(FindUsualCandidates, AreThoseOfAnyOtherSearchWhereNothingIsKnown) {
   const test::World world = test::strange_place(3);
   const Pose2 truth{0.4, -0.2, 50 * kDegree};
   const ScanView reference = test::view_from(world, {});
@@ -103,7 +103,7 @@ TEST(UsualHypotheses, AreThoseOfAnyOtherSearchWhereNothingIsKnown) {
 }
 
 /// Along a bare corridor nothing but the habit tells how far the robot went.
-TEST(UsualHypotheses, AlongABareCorridorAreWhereTheRobotUsuallyGoes) {
+TEST(FindUsualCandidates, AlongABareCorridorAreWhereTheRobotUsuallyGoes) {
   const test::World corridor = test::bare_corridor();
   const ScanView reference = test::view_from(corridor, {0.0, 0.1, 0.0}, test::half_circle());
   const ScanView query = test::view_from(corridor, {1.5, 0.0, 0.0}, test::half_circle(), 2);
@@ -115,7 +115,7 @@ TEST(UsualHypotheses, AlongABareCorridorAreWhereTheRobotUsuallyGoes) {
   }
 }
 
-TEST(UsualHypotheses, ScoreLessByTheSurprise) {
+TEST(FindUsualCandidates, ScoreLessByTheSurprise) {
   const test::World world = test::strange_place(4);
   const Pose2 truth{0.3, 0.2, 0.0};
   const ScanView reference = test::view_from(world, {});

@@ -8,17 +8,17 @@
 namespace shapemap {
 namespace {
 
-EdgeChoices link_of(double step_m, double turn_rad, double probability) {
-  EdgeChoices link;
-  link.candidates.push_back({{step_m, 0.0, turn_rad}, Eigen::Matrix3d::Identity(), 0.0});
-  link.probability = probability;
-  return link;
+EdgeChoices edge_of(double step_m, double turn_rad, double probability) {
+  EdgeChoices edge;
+  edge.candidates.push_back({{step_m, 0.0, turn_rad}, Eigen::Matrix3d::Identity(), 0.0});
+  edge.probability = probability;
+  return edge;
 }
 
 TEST(StepStatistics, NineteenOfTwentySureStepsAreShorter) {
   std::vector<EdgeChoices> edges;
-  for (int k = 1; k <= 100; ++k) edges.push_back(link_of(0.02 * k, (k % 2 == 0 ? 1 : -1) * k * kDegree, 0.99));
-  edges.insert(edges.begin() + 40, link_of(50.0, 3.0, 0.5));
+  for (int k = 1; k <= 100; ++k) edges.push_back(edge_of(0.02 * k, (k % 2 == 0 ? 1 : -1) * k * kDegree, 0.99));
+  edges.insert(edges.begin() + 40, edge_of(50.0, 3.0, 0.5));
   edges.insert(edges.begin() + 20, EdgeChoices{});
   const StepStatistics usual = step_statistics(sure_steps(edges));
   EXPECT_NEAR(usual.step_m, 1.92, 1e-9);
@@ -27,7 +27,7 @@ TEST(StepStatistics, NineteenOfTwentySureStepsAreShorter) {
 
 TEST(StepStatistics, IsNotLessThanARobotThatStoodStillCouldDo) {
   for (const std::vector<EdgeChoices>& edges :
-       {std::vector<EdgeChoices>{}, std::vector<EdgeChoices>(30, link_of(0.01, 0.001, 0.99))}) {
+       {std::vector<EdgeChoices>{}, std::vector<EdgeChoices>(30, edge_of(0.01, 0.001, 0.99))}) {
     EXPECT_EQ(step_statistics(sure_steps(edges)).step_m, 0.3);
     EXPECT_EQ(step_statistics(sure_steps(edges)).turn_rad, 30 * kDegree);
   }

@@ -191,13 +191,13 @@ TEST(Icp, KeepsAtMostTheIterationsAskedFor) {
 }
 
 /// A scan of four sub-scans of which one is turned by a small error, and the scan as it should be.
-struct TurnedSubScan {
+struct TurnedSweep {
   test::World world;
   Shape right;
   Shape wrong;
 };
 
-TurnedSubScan turned_sub_scan(int sweep, const Pose2& error, double spacing_m = 0.05) {
+TurnedSweep turned_sweep(int sweep, const Pose2& error, double spacing_m = 0.05) {
   test::Scanner scanner;
   scanner.num_sweeps = 4;
   scanner.num_beams = 401;
@@ -227,7 +227,7 @@ TEST(DecoupledIcp, FindsASubScanThatIsTurnedByOneDegree) {
   // Partners are points: how close they come to the truth is limited by the spacing of the points.
   for (int s = 0; s < 4; ++s) {
     const Pose2 error{0.0, 0.0, 1 * kDegree};
-    const TurnedSubScan scans = turned_sub_scan(s, error, 0.01);
+    const TurnedSweep scans = turned_sweep(s, error, 0.01);
     const std::vector<Pose2> found =
         decoupled_icp(map_of(scans.right), scans.wrong, {}, kMeanDistance_m, kWholeScan, kOverlap);
     ASSERT_EQ(found.size(), 4U);
@@ -241,7 +241,7 @@ TEST(DecoupledIcp, FindsASubScanThatIsTurnedByOneDegree) {
 TEST(DecoupledIcp, BringsATurnedSubScanBackTowardsTheWallsAtAnySpacing) {
   for (const double spacing_m : {0.01, 0.02, 0.05}) {
     for (int s = 0; s < 4; ++s) {
-      const TurnedSubScan scans = turned_sub_scan(s, {0.0, 0.0, 1 * kDegree}, spacing_m);
+      const TurnedSweep scans = turned_sweep(s, {0.0, 0.0, 1 * kDegree}, spacing_m);
       const std::vector<Pose2> found =
           decoupled_icp(map_of(scans.right), scans.wrong, {}, kMeanDistance_m, kWholeScan, kOverlap);
       const double before_m = off_the_walls_m(scans.world, scans.wrong, s);
@@ -253,7 +253,7 @@ TEST(DecoupledIcp, BringsATurnedSubScanBackTowardsTheWallsAtAnySpacing) {
 }
 
 TEST(DecoupledIcp, CorrectionsAreInTheFrameOfTheQuery) {
-  const TurnedSubScan scans = turned_sub_scan(1, {0.0, 0.0, 1 * kDegree});
+  const TurnedSweep scans = turned_sweep(1, {0.0, 0.0, 1 * kDegree});
   const Pose2 map_from_query{3.0, -2.0, 2.0};
   const std::vector<Pose2> here =
       decoupled_icp(map_of(scans.right), scans.wrong, {}, kMeanDistance_m, kWholeScan, kOverlap);
@@ -271,7 +271,7 @@ TEST(DecoupledIcp, LeavesAScanOfOneSubScanAlone) {
 }
 
 TEST(DecoupledIcp, LeavesASubScanAloneThatNothingPulls) {
-  TurnedSubScan scans = turned_sub_scan(2, {50.0, 0.0, 0.0});
+  TurnedSweep scans = turned_sweep(2, {50.0, 0.0, 0.0});
   const std::vector<Pose2> found =
       decoupled_icp(map_of(scans.right), scans.wrong, {}, kMeanDistance_m, kWholeScan, kOverlap);
   ASSERT_EQ(found.size(), 4U);

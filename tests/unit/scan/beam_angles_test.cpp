@@ -59,24 +59,24 @@ TEST(EvenBeams, AreNoneWhereNothingCanBeRight) {
 }
 
 TEST(UnevenBeams, HaveTheTypicalStepAndTheDirectionOfMost) {
-  Sweep scan;
-  scan.ranges_m = {1.0F, 1.0F, 1.0F, 1.0F, 1.0F};
-  set_beam_angles(scan, {0.0, -0.1, -0.2, -0.15, -0.5});
-  EXPECT_NEAR(scan.angle_step_rad, -0.1, 1e-12);
-  EXPECT_EQ(scan.beam_angle_rad(3), -0.15);
-  EXPECT_FALSE(scan.is_evenly_spaced());
+  Sweep sweep;
+  sweep.ranges_m = {1.0F, 1.0F, 1.0F, 1.0F, 1.0F};
+  set_beam_angles(sweep, {0.0, -0.1, -0.2, -0.15, -0.5});
+  EXPECT_NEAR(sweep.angle_step_rad, -0.1, 1e-12);
+  EXPECT_EQ(sweep.beam_angle_rad(3), -0.15);
+  EXPECT_FALSE(sweep.is_evenly_spaced());
 }
 
 TEST(UnevenBeams, GiveReturnsFromRightToLeftInAnyOrderOfReadings) {
-  Sweep scan;
-  scan.ranges_m = {3.0F, 1.0F, 4.0F, 2.0F};
-  set_beam_angles(scan, {0.3, 0.1, 0.4, 0.2});
+  Sweep sweep;
+  sweep.ranges_m = {3.0F, 1.0F, 4.0F, 2.0F};
+  set_beam_angles(sweep, {0.3, 0.1, 0.4, 0.2});
   std::vector<double> ranges_m;
-  for (const Return& hit : returns_in_robot(scan, {})) ranges_m.push_back(hit.range_m);
+  for (const Return& hit : returns_in_robot(sweep, {})) ranges_m.push_back(hit.range_m);
   EXPECT_THAT(ranges_m, ElementsAre(1.0, 2.0, 3.0, 4.0));
-  scan.robot_from_sensor.roll_rad = kPi;
+  sweep.robot_from_sensor.roll_rad = kPi;
   ranges_m.clear();
-  for (const Return& hit : returns_in_robot(scan, {})) {
+  for (const Return& hit : returns_in_robot(sweep, {})) {
     ranges_m.push_back(hit.range_m);
     EXPECT_LT(hit.p_in_robot_m.y(), 0.0);
   }
@@ -84,10 +84,10 @@ TEST(UnevenBeams, GiveReturnsFromRightToLeftInAnyOrderOfReadings) {
 }
 
 TEST(UnevenBeams, GoToTheNearestOfEvenOnes) {
-  Sweep scan;
-  scan.ranges_m = {1.0F, 2.0F, std::nanf(""), 4.0F, 3.0F};
-  set_beam_angles(scan, {0.0, 0.11, 0.2, 0.3, 0.31});
-  const Sweep even = on_even_beams(scan);
+  Sweep sweep;
+  sweep.ranges_m = {1.0F, 2.0F, std::nanf(""), 4.0F, 3.0F};
+  set_beam_angles(sweep, {0.0, 0.11, 0.2, 0.3, 0.31});
+  const Sweep even = on_even_beams(sweep);
   EXPECT_TRUE(even.is_evenly_spaced());
   ASSERT_EQ(even.ranges_m.size(), 4U);
   EXPECT_EQ(even.ranges_m[0], 1.0F);
@@ -97,12 +97,12 @@ TEST(UnevenBeams, GoToTheNearestOfEvenOnes) {
 }
 
 TEST(BeamTimes, GoOnFromTheStartByTheStep) {
-  Sweep scan;
-  scan.start_s = 0.5;
-  scan.beam_time_step_s = 0.01;
-  EXPECT_DOUBLE_EQ(scan.beam_time_s(10), 0.6);
-  scan.beam_times_s = {0.125F, 0.25F};
-  EXPECT_EQ(scan.beam_time_s(1), 0.25);
+  Sweep sweep;
+  sweep.start_s = 0.5;
+  sweep.beam_time_step_s = 0.01;
+  EXPECT_DOUBLE_EQ(sweep.beam_time_s(10), 0.6);
+  sweep.beam_times_s = {0.125F, 0.25F};
+  EXPECT_EQ(sweep.beam_time_s(1), 0.25);
 }
 
 }  // namespace

@@ -38,10 +38,10 @@ Log sweeps(int count, const std::function<Pose2(int)>& world_from_robot = drivin
   Log log;
   for (int i = 0; i < count; ++i) {
     log.scans.push_back(test::scan_of(world, world_from_robot(i), scanner, rng));
-    Sweep& scan = log.scans.back().sweeps.front();
-    scan.max_range_m = 0.0;
-    scan.sensor_label = "laser";
-    for (float& range_m : scan.ranges_m) {
+    Sweep& sweep = log.scans.back().sweeps.front();
+    sweep.max_range_m = 0.0;
+    sweep.sensor_label = "laser";
+    for (float& range_m : sweep.ranges_m) {
       range_m = std::round(range_m * 100.0F) / 100.0F;
       if (range_m >= static_cast<float>(seen_m)) range_m = kLost;
     }
@@ -55,8 +55,8 @@ using Code = std::function<double(int)>;  ///< of the number of the sweep
 std::size_t say_lost(Log& log, const Code& code_m) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < log.scans.size(); ++i) {
-    for (Sweep& scan : log.scans[i].sweeps) {
-      for (float& range_m : scan.ranges_m) {
+    for (Sweep& sweep : log.scans[i].sweeps) {
+      for (float& range_m : sweep.ranges_m) {
         if (range_m != kLost) continue;
         range_m = static_cast<float>(code_m(static_cast<int>(i)));
         ++count;
@@ -68,16 +68,16 @@ std::size_t say_lost(Log& log, const Code& code_m) {
 
 std::size_t num_hits(const Log& log) {
   std::size_t count = 0;
-  for (const Scan& position : log.scans) {
-    for (const Sweep& scan : position.sweeps) count += returns_in_robot(scan, {}).size();
+  for (const Scan& scan : log.scans) {
+    for (const Sweep& sweep : scan.sweeps) count += returns_in_robot(sweep, {}).size();
   }
   return count;
 }
 
 std::size_t num_seen(const Log& log) {
   std::size_t count = 0;
-  for (const Scan& position : log.scans) {
-    for (const float range_m : position.sweeps.front().ranges_m) count += range_m != kLost ? 1 : 0;
+  for (const Scan& scan : log.scans) {
+    for (const float range_m : scan.sweeps.front().ranges_m) count += range_m != kLost ? 1 : 0;
   }
   return count;
 }
@@ -174,7 +174,7 @@ TEST(NoReturn, AHeaderDoesNotOverruleSurfacesFarBeyondIt) {
   Log log = sweeps(60);
   const std::size_t seen = num_seen(log);
   say_lost(log, [](int) { return 51.15; });
-  for (Scan& position : log.scans) position.sweeps[0].max_range_m = 1.5;
+  for (Scan& scan : log.scans) scan.sweeps[0].max_range_m = 1.5;
   sort_out_no_returns(log, {});
   EXPECT_THAT(log.warnings, ElementsAre(HasSubstr("maximum range of 1.5 m")));
   EXPECT_FLOAT_EQ(static_cast<float>(log.scans[0].sweeps[0].max_range_m), 51.15F);
@@ -184,7 +184,7 @@ TEST(NoReturn, AHeaderDoesNotOverruleSurfacesFarBeyondIt) {
 TEST(NoReturn, AHeaderWithNothingBeyondItHolds) {
   Log log = sweeps(60);
   say_lost(log, [](int) { return 4.3; });
-  for (Scan& position : log.scans) position.sweeps[0].max_range_m = 3.9;
+  for (Scan& scan : log.scans) scan.sweeps[0].max_range_m = 3.9;
   sort_out_no_returns(log, {});
   EXPECT_THAT(log.warnings, IsEmpty());
   EXPECT_EQ(log.scans[0].sweeps[0].max_range_m, 3.9);
@@ -207,8 +207,8 @@ TEST(NoReturn, SurfacesAreNoLevels) {
 TEST(NoReturn, CoarseReadingsAndLostBeamsAreNoLevels) {
   Log log = sweeps(150, driving, 100.0);
   std::mt19937 rng(1);
-  for (Scan& position : log.scans) {
-    for (float& range_m : position.sweeps[0].ranges_m) {
+  for (Scan& scan : log.scans) {
+    for (float& range_m : scan.sweeps[0].ranges_m) {
       range_m = rng() % 2 == 0 ? std::numeric_limits<float>::quiet_NaN() : std::round(range_m * 20.0F) / 20.0F;
     }
   }

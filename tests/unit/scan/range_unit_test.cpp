@@ -25,13 +25,13 @@ Log walk(double size, double noise_m, double metres_per_unit, bool in_whole_numb
   }
   Log log;
   for (int i = 0; i < 10; ++i) {
-    Scan position = test::scan_of(world, {0.02 * i * size, 0.01 * i * size, 0.1 * i}, scanner, rng);
-    for (float& range : position.sweeps[0].ranges_m) {
+    Scan scan = test::scan_of(world, {0.02 * i * size, 0.01 * i * size, 0.1 * i}, scanner, rng);
+    for (float& range : scan.sweeps[0].ranges_m) {
       const double value = range / metres_per_unit;
       range = static_cast<float>(in_whole_numbers ? std::round(value) : value);
     }
-    position.sweeps[0].max_range_m = 60.0;
-    log.scans.push_back(std::move(position));
+    scan.sweeps[0].max_range_m = 60.0;
+    log.scans.push_back(std::move(scan));
   }
   return log;
 }
@@ -49,8 +49,8 @@ TEST(RangeUnit, IsRecognisedFromTheReadings) {
 
 TEST(RangeUnit, IsNotMistakenForACodeThatMostReadingsHave) {
   Log log = walk(1.0, 0.01, 1.0, false);
-  for (Scan& position : log.scans) {
-    std::vector<float>& ranges_m = position.sweeps[0].ranges_m;
+  for (Scan& scan : log.scans) {
+    std::vector<float>& ranges_m = scan.sweeps[0].ranges_m;
     for (std::size_t i = 0; i < ranges_m.size(); ++i) {
       if (i % 10 != 0) ranges_m[i] = 900.0F;
     }
@@ -61,7 +61,7 @@ TEST(RangeUnit, IsNotMistakenForACodeThatMostReadingsHave) {
 TEST(RangeUnit, OfALogWithoutReadingsIsTheMetre) {
   EXPECT_EQ(recognised_range_unit({}), RangeUnit::kMetre);
   Log log = walk(1.0, 0.01, 0.001, true);
-  for (Scan& position : log.scans) position.sweeps[0].ranges_m.assign(5, std::nanf(""));
+  for (Scan& scan : log.scans) scan.sweeps[0].ranges_m.assign(5, std::nanf(""));
   EXPECT_EQ(recognised_range_unit(log), RangeUnit::kMetre);
 }
 

@@ -13,11 +13,11 @@ namespace {
 constexpr double kTiny = 1e-12;
 
 Sweep three_beams(double first_angle_rad, double angle_step_rad) {
-  Sweep scan;
-  scan.first_angle_rad = first_angle_rad;
-  scan.angle_step_rad = angle_step_rad;
-  scan.ranges_m = {1.0F, 2.0F, 3.0F};
-  return scan;
+  Sweep sweep;
+  sweep.first_angle_rad = first_angle_rad;
+  sweep.angle_step_rad = angle_step_rad;
+  sweep.ranges_m = {1.0F, 2.0F, 3.0F};
+  return sweep;
 }
 
 void expect_point(const Return& hit, double x_m, double y_m, std::size_t beam) {
@@ -44,70 +44,70 @@ TEST(Returns, OfAClockwiseSensorAreOrderedCounterclockwise) {
 }
 
 TEST(Returns, OfAnUpsideDownSensorAreMirroredAndOrderedCounterclockwise) {
-  Sweep scan = three_beams(-kPi / 2, kPi / 2);
-  scan.robot_from_sensor.roll_rad = kPi;
-  const std::vector<Return> hits = returns_in_robot(scan, {});
+  Sweep sweep = three_beams(-kPi / 2, kPi / 2);
+  sweep.robot_from_sensor.roll_rad = kPi;
+  const std::vector<Return> hits = returns_in_robot(sweep, {});
   ASSERT_EQ(hits.size(), 3U);
   expect_point(hits[0], 0.0, -3.0, 2);
   expect_point(hits[2], 0.0, 1.0, 0);
 }
 
 TEST(Returns, UpsideDownAndClockwiseCancelInOrder) {
-  Sweep scan = three_beams(kPi / 2, -kPi / 2);
-  scan.robot_from_sensor.roll_rad = kPi;
-  const std::vector<Return> hits = returns_in_robot(scan, {});
+  Sweep sweep = three_beams(kPi / 2, -kPi / 2);
+  sweep.robot_from_sensor.roll_rad = kPi;
+  const std::vector<Return> hits = returns_in_robot(sweep, {});
   ASSERT_EQ(hits.size(), 3U);
   expect_point(hits[0], 0.0, -1.0, 0);
   expect_point(hits[2], 0.0, 3.0, 2);
 }
 
 TEST(Returns, MountAndHeadingMoveThem) {
-  Sweep scan = three_beams(0.0, 0.1);
-  scan.ranges_m.resize(1);
-  scan.robot_from_sensor = {0.5, 0.25, 1.0, kPi / 2, 0.0, 0.0};
-  expect_point(returns_in_robot(scan, {}).at(0), 0.5, 1.25, 0);
-  scan.nominal_heading_rad = kPi / 2;
-  expect_point(returns_in_robot(scan, {}).at(0), -1.25, 0.5, 0);
-  const Pose2 pose = robot_from_sensor2(scan);
+  Sweep sweep = three_beams(0.0, 0.1);
+  sweep.ranges_m.resize(1);
+  sweep.robot_from_sensor = {0.5, 0.25, 1.0, kPi / 2, 0.0, 0.0};
+  expect_point(returns_in_robot(sweep, {}).at(0), 0.5, 1.25, 0);
+  sweep.nominal_heading_rad = kPi / 2;
+  expect_point(returns_in_robot(sweep, {}).at(0), -1.25, 0.5, 0);
+  const Pose2 pose = robot_from_sensor2(sweep);
   EXPECT_NEAR(pose.x_m, -0.25, kTiny);
   EXPECT_NEAR(pose.y_m, 0.5, kTiny);
   EXPECT_NEAR(angle_between(pose.theta_rad, kPi), 0.0, kTiny);
 }
 
 TEST(Returns, OfATiltedSensorAreProjectedToTheFloor) {
-  Sweep scan = three_beams(0.0, kPi / 2);
-  scan.ranges_m.resize(2);
-  scan.robot_from_sensor.pitch_rad = 20 * kDegree;
-  const std::vector<Return> hits = returns_in_robot(scan, {});
+  Sweep sweep = three_beams(0.0, kPi / 2);
+  sweep.ranges_m.resize(2);
+  sweep.robot_from_sensor.pitch_rad = 20 * kDegree;
+  const std::vector<Return> hits = returns_in_robot(sweep, {});
   ASSERT_EQ(hits.size(), 2U);
   expect_point(hits[0], std::cos(20 * kDegree), 0.0, 0);
   expect_point(hits[1], 0.0, 2.0, 1);  // sideways, the tilt axis itself
 }
 
 TEST(Returns, ASteepSensorHasNone) {
-  Sweep scan = three_beams(0.0, 0.1);
-  scan.robot_from_sensor.pitch_rad = 31 * kDegree;
-  EXPECT_TRUE(returns_in_robot(scan, {}).empty());
+  Sweep sweep = three_beams(0.0, 0.1);
+  sweep.robot_from_sensor.pitch_rad = 31 * kDegree;
+  EXPECT_TRUE(returns_in_robot(sweep, {}).empty());
   ReturnOptions options;
   options.max_mount_tilt_rad = 32 * kDegree;
-  EXPECT_EQ(returns_in_robot(scan, options).size(), 3U);
-  scan.robot_from_sensor.pitch_rad = 0.0;
-  scan.robot_from_sensor.roll_rad = kPi - 31 * kDegree;
-  EXPECT_TRUE(returns_in_robot(scan, {}).empty());
+  EXPECT_EQ(returns_in_robot(sweep, options).size(), 3U);
+  sweep.robot_from_sensor.pitch_rad = 0.0;
+  sweep.robot_from_sensor.roll_rad = kPi - 31 * kDegree;
+  EXPECT_TRUE(returns_in_robot(sweep, {}).empty());
 }
 
 TEST(Returns, LimitsOfTheLogAreOverriddenByOptions) {
-  Sweep scan = three_beams(0.0, 0.1);
-  scan.min_range_m = 1.5;
-  scan.max_range_m = 3.0;
-  ASSERT_EQ(returns_in_robot(scan, {}).size(), 1U);
-  EXPECT_EQ(returns_in_robot(scan, {})[0].beam, 1U);
+  Sweep sweep = three_beams(0.0, 0.1);
+  sweep.min_range_m = 1.5;
+  sweep.max_range_m = 3.0;
+  ASSERT_EQ(returns_in_robot(sweep, {}).size(), 1U);
+  EXPECT_EQ(returns_in_robot(sweep, {})[0].beam, 1U);
   ReturnOptions options;
   options.min_range_m = 0.5;
   options.max_range_m = 2.5;
-  EXPECT_EQ(returns_in_robot(scan, options).size(), 2U);
+  EXPECT_EQ(returns_in_robot(sweep, options).size(), 2U);
   options.max_range_m = 10.0;
-  EXPECT_EQ(returns_in_robot(scan, options).size(), 3U);
+  EXPECT_EQ(returns_in_robot(sweep, options).size(), 3U);
 }
 
 TEST(Returns, WhatIsNoDistanceIsNoReturn) {

@@ -17,12 +17,12 @@ using testing::IsEmpty;
 std::vector<Scan> at_times(const std::vector<double>& times_s, const std::vector<double>& taken_s) {
   std::vector<Scan> scans;
   for (std::size_t i = 0; i < times_s.size(); ++i) {
-    Scan position;
-    position.timestamp_s = times_s[i];
-    position.sweeps.emplace_back();
-    position.sweeps.back().start_s = times_s[i];
-    position.sweeps.back().ranges_m = {static_cast<float>(taken_s[i])};
-    scans.push_back(std::move(position));
+    Scan scan;
+    scan.timestamp_s = times_s[i];
+    scan.sweeps.emplace_back();
+    scan.sweeps.back().start_s = times_s[i];
+    scan.sweeps.back().ranges_m = {static_cast<float>(taken_s[i])};
+    scans.push_back(std::move(scan));
   }
   return scans;
 }
@@ -38,7 +38,7 @@ std::vector<double> steady(std::size_t count) {
 
 std::vector<double> times_of(const std::vector<Scan>& scans) {
   std::vector<double> times_s;
-  for (const Scan& position : scans) times_s.push_back(position.timestamp_s);
+  for (const Scan& scan : scans) times_s.push_back(scan.timestamp_s);
   return times_s;
 }
 
@@ -66,7 +66,7 @@ TEST(Timestamps, ThatWereSwappedAreSorted) {
   const TimestampRepairs repairs = mend_timestamps(scans);
   EXPECT_EQ(repairs.num_sorted, 5U);
   EXPECT_THAT(times_of(scans), ElementsAre(0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7));
-  for (const Scan& position : scans) EXPECT_EQ(position.sweeps[0].start_s, position.timestamp_s);
+  for (const Scan& scan : scans) EXPECT_EQ(scan.sweeps[0].start_s, scan.timestamp_s);
 }
 
 /// As in real recordings: the computer was busy, and stamped some scans too late.
@@ -116,7 +116,7 @@ TEST(Timestamps, IncreaseAfterwardsWhateverTheyWere) {
     EXPECT_TRUE(std::adjacent_find(mended_s.begin(), mended_s.end(), std::greater_equal<>()) == mended_s.end())
         << testing::PrintToString(times_s) << " becomes " << testing::PrintToString(mended_s);
     std::vector<double> kept_s;
-    for (const Scan& position : scans) kept_s.push_back(position.sweeps[0].start_s);
+    for (const Scan& scan : scans) kept_s.push_back(scan.sweeps[0].start_s);
     std::sort(kept_s.begin(), kept_s.end());
     std::sort(times_s.begin(), times_s.end());
     EXPECT_EQ(kept_s, times_s);

@@ -201,8 +201,8 @@ TEST(FitPolylines, SegmentsPointAlongTheScan) {
   const test::World room = test::uneven_room();
   const test::Scanner scanner;
   std::mt19937 rng(5);
-  const Scan position = test::scan_of(room, {0.3, -0.2, 0.7}, scanner, rng);
-  const SweepShape shape = sweep_shape(position.sweeps[0], 0, {}, options_for_test(), test::paper_options().shape);
+  const Scan scan = test::scan_of(room, {0.3, -0.2, 0.7}, scanner, rng);
+  const SweepShape shape = sweep_shape(scan.sweeps[0], 0, {}, options_for_test(), test::paper_options().shape);
   ASSERT_GE(shape.polylines.segments.size(), 8U);
   for (const LineSegment& segment : shape.polylines.segments) {
     // Counterclockwise about the sensor, at the origin.
@@ -223,8 +223,8 @@ TEST(FitPolylines, ClosestSegmentIsTheNearestOfAll) {
     std::mt19937 rng(seed);
     test::Scanner scanner;
     scanner.noise_m = 0.01;
-    const Scan position = test::scan_of(room, {0.1, 0.2, 0.3}, scanner, rng);
-    const SweepShape shape = sweep_shape(position.sweeps[0], 0, {}, options_for_test(), test::paper_options().shape);
+    const Scan scan = test::scan_of(room, {0.1, 0.2, 0.3}, scanner, rng);
+    const SweepShape shape = sweep_shape(scan.sweeps[0], 0, {}, options_for_test(), test::paper_options().shape);
     const PolylineFit& fit = shape.polylines;
     ASSERT_EQ(fit.closest_segment.size(), shape.scan_points.size());
     for (std::size_t i = 0; i < shape.scan_points.size(); ++i) {

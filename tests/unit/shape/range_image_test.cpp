@@ -144,8 +144,8 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& mounting) { return mounting.param.name; });
 
 TEST(RangeImage, NormalsOfWallsPointToTheSensor) {
-  const Scan position = test::scan_of(test::uneven_room(), {0.3, -0.2, 0.4});
-  const RangeImage image = image_of(position.sweeps[0]);
+  const Scan scan = test::scan_of(test::uneven_room(), {0.3, -0.2, 0.4});
+  const RangeImage image = image_of(scan.sweeps[0]);
   int num_across = 0;
   for (const RangeImage::Beam& beam : image.beams) {
     ASSERT_GT(beam.range_m, 0.0);

@@ -32,9 +32,9 @@ TEST(ScanView, HasADirectionAndWeightsForEveryPoint) {
 
 TEST(ScanView, HasNoMorePointsThanAskedFor) {
   std::mt19937 rng(1);
-  const Scan position = test::scan_of(test::cluttered_room(1), {}, test::full_circle(), rng);
+  const Scan scan = test::scan_of(test::cluttered_room(1), {}, test::full_circle(), rng);
   for (const int max_points : {20, 100, 240, 5000}) {
-    const ScanView view = view_of(position, {}, {}, {}, {max_points});
+    const ScanView view = view_of(scan, {}, {}, {}, {max_points});
     EXPECT_LE(view.size(), static_cast<std::size_t>(max_points));
     EXPECT_GE(view.size(), std::min<std::size_t>(100, static_cast<std::size_t>(max_points) / 3));
   }
@@ -58,9 +58,9 @@ TEST(ScanView, WeighsTheWallsOfACorridorLessThanItsEnd) {
 
 TEST(ScanView, TurnsWithItsScan) {
   std::mt19937 rng(1);
-  const Scan position = test::scan_of(test::cluttered_room(1), {}, test::full_circle(), rng);
-  const ScanView view = test::view_of(position);
-  const ScanView turned = test::view_of(test::turned(position, 90 * kDegree));
+  const Scan scan = test::scan_of(test::cluttered_room(1), {}, test::full_circle(), rng);
+  const ScanView view = test::view_of(scan);
+  const ScanView turned = test::view_of(test::turned(scan, 90 * kDegree));
   ASSERT_EQ(turned.size(), view.size());
   EXPECT_NEAR(turned.reach_m, view.reach_m, 1e-9);
   for (std::size_t i = 0; i < view.size(); ++i) {
@@ -72,15 +72,15 @@ TEST(ScanView, TurnsWithItsScan) {
 
 TEST(ScanView, CountsEveryPointOfTheShapeInItsTangents) {
   std::mt19937 rng(1);
-  const Scan position = test::scan_of(test::cluttered_room(1), {}, test::full_circle(), rng);
+  const Scan scan = test::scan_of(test::cluttered_room(1), {}, test::full_circle(), rng);
   const double sum = [&] {
-    const TangentHistogram tangents = test::view_of(position).tangents;
+    const TangentHistogram tangents = test::view_of(scan).tangents;
     return std::accumulate(tangents.begin(), tangents.end(), 0.0);
   }();
-  const std::size_t num_points = shapemap::shape_of(position, {}, {}, {}).size();
+  const std::size_t num_points = shapemap::shape_of(scan, {}, {}, {}).size();
   EXPECT_GE(sum, static_cast<double>(num_points)) << "each counts once in its own bin, and less in those beside";
-  TangentHistogram before = test::view_of(position).tangents;
-  const TangentHistogram coarser = view_of(position, {}, {}, {}, {20}).tangents;
+  TangentHistogram before = test::view_of(scan).tangents;
+  const TangentHistogram coarser = view_of(scan, {}, {}, {}, {20}).tangents;
   EXPECT_EQ(before, coarser) << "those that are not compared count as well";
 }
 
@@ -97,19 +97,19 @@ TEST(ScanView, SeesAShareOfAllDirections) {
 /// A laser at the front of a robot sees no less for it.
 TEST(ScanView, SeesAsMuchWhereverItIsMounted) {
   std::mt19937 rng(1);
-  Scan position = test::scan_of(test::round_room(3.0), {}, test::half_circle(), rng);
-  const double here = test::view_of(position).seen_share;
-  for (Sweep& sweep : position.sweeps) sweep.robot_from_sensor.x_m += 1.5;
-  EXPECT_EQ(test::view_of(position).seen_share, here);
+  Scan scan = test::scan_of(test::round_room(3.0), {}, test::half_circle(), rng);
+  const double here = test::view_of(scan).seen_share;
+  for (Sweep& sweep : scan.sweeps) sweep.robot_from_sensor.x_m += 1.5;
+  EXPECT_EQ(test::view_of(scan).seen_share, here);
 }
 
 TEST(ScanView, OfNoReturnsIsEmpty) {
-  for (const Scan& position : {test::blind_position(), Scan{}}) {
-    const ScanView view = test::view_of(position);
+  for (const Scan& scan : {test::blind_scan(), Scan{}}) {
+    const ScanView view = test::view_of(scan);
     EXPECT_EQ(view.size(), 0U);
     EXPECT_EQ(view.reach_m, 0.0);
     EXPECT_EQ(view.seen_share, 0.0);
-    EXPECT_EQ(view.images.size(), position.sweeps.size());
+    EXPECT_EQ(view.images.size(), scan.sweeps.size());
   }
 }
 

@@ -63,9 +63,9 @@ TEST(Shape, AShortPieceGivesItsMiddle) {
 TEST(Shape, OfBeamsHasThePointsOfTheScan) {
   MappingOptions options = test::paper_options();
   options.shape.points = ShapePoints::kBeams;
-  const Scan position = before_a_wall(2.0);
-  const std::vector<Return> returns = returns_in_robot(position.sweeps[0], options.returns);
-  const Shape shape = test::shape_of(position, options);
+  const Scan scan = before_a_wall(2.0);
+  const std::vector<Return> returns = returns_in_robot(scan.sweeps[0], options.returns);
+  const Shape shape = test::shape_of(scan, options);
   ASSERT_GT(returns.size(), 100U);
   ASSERT_EQ(shape.size(), returns.size());
   for (std::size_t i = 0; i < shape.size(); ++i) {
@@ -145,11 +145,11 @@ TEST(MovedShape, TangentsWrapToHalfATurn) {
 
 TEST(MovedShape, AppliesTheSubScanPosesFirst) {
   const Shape shape{{{{1.0, 0.0}, 0.1, 0}, {{0.0, 1.0}, 0.2, 1}, {{-1.0, 0.0}, 0.3, 1}}, 2};
-  const std::vector<Pose2> sub_scan_poses{{0.01, 0.02, 0.03}, {-0.04, 0.05, -0.06}};
+  const std::vector<Pose2> sweep_poses{{0.01, 0.02, 0.03}, {-0.04, 0.05, -0.06}};
   const Pose2 b_from_a{2.0, 1.0, 0.5};
-  const Shape result = moved(shape, b_from_a, sub_scan_poses);
+  const Shape result = moved(shape, b_from_a, sweep_poses);
   for (std::size_t i = 0; i < shape.size(); ++i) {
-    const Pose2& first = sub_scan_poses[static_cast<std::size_t>(shape.points[i].sweep)];
+    const Pose2& first = sweep_poses[static_cast<std::size_t>(shape.points[i].sweep)];
     EXPECT_THAT(result.points[i].p_m, IsNearPoint(b_from_a * (first * shape.points[i].p_m), 1e-12));
     EXPECT_THAT(result.points[i].tangent_rad,
                 IsNearAngle(shape.points[i].tangent_rad + first.theta_rad + b_from_a.theta_rad, 1e-12));

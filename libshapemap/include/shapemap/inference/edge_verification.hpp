@@ -35,7 +35,7 @@ struct DoubtfulEdge {
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, theta), in the frame of the first node
     double best_deviation_m = 0.0;  ///< how little the two scans hold it, see best_deviation_m() in confidence.hpp
   };
-  std::size_t link = 0;
+  std::size_t edge = 0;
   std::vector<Candidate> candidates;  ///< at least one
   double insufficient_view = 0.0;     ///< of the two scans: see insufficient_view() in confidence.hpp
 };
@@ -50,21 +50,21 @@ struct VerifiedEdge {
 
 struct VerifiedMap {
   std::vector<Pose2> map_from_node;
-  std::vector<std::size_t> piece_of_node;  ///< pieces that were joined have the number of one of them
-  std::vector<VerifiedEdge> edges;         ///< per doubtful link
+  std::vector<std::size_t> submap_of_node;  ///< pieces that were joined have the number of one of them
+  std::vector<VerifiedEdge> edges;          ///< per doubtful link
 };
 
-/// Joins the pieces (nodes with the same `piece_of_node`, right to each other) at the doubtful links, the most probable
-/// first. A candidate is worth its own score and what all pairs of scans of the two pieces then say (MapScore), as
-/// far as they are near each other along the chain, less where its two scans hold it in no direction, and more where
-/// the map has it, or where another link that joins the same two pieces says the same: where somebody walks by, all
-/// others speak against the place, but the way there and back may be known. From that follows how probable each place
-/// is, and that it is none of them (multinomial logit), the more so the less the two scans see. A place that the best
-/// only slides to, along a corridor, counts for it in part. What is less probable than `least_probability` is not
-/// joined; parallel links that say what was joined are joined with it, as probable as it. Stops early, with the rest of
-/// the links as they were, when the observer asks to.
+/// Joins the pieces (nodes with the same `submap_of_node`, right to each other) at the doubtful links, the most
+/// probable first. A candidate is worth its own score and what all pairs of scans of the two pieces then say
+/// (MapScore), as far as they are near each other along the chain, less where its two scans hold it in no direction,
+/// and more where the map has it, or where another link that joins the same two pieces says the same: where somebody
+/// walks by, all others speak against the place, but the way there and back may be known. From that follows how
+/// probable each place is, and that it is none of them (multinomial logit), the more so the less the two scans see. A
+/// place that the best only slides to, along a corridor, counts for it in part. What is less probable than
+/// `least_probability` is not joined; parallel links that say what was joined are joined with it, as probable as it.
+/// Stops early, with the rest of the links as they were, when the observer asks to.
 VerifiedMap verify_edges(const NodeViews& views, std::vector<Pose2> map_from_node,
-                         std::vector<std::size_t> piece_of_node, const std::vector<DoubtfulEdge>& doubtful,
+                         std::vector<std::size_t> submap_of_node, const std::vector<DoubtfulEdge>& doubtful,
                          const VisibilityOptions& visibility, double least_probability, int threads,
                          RunObserver& observer);
 

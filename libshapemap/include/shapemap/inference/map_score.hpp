@@ -30,7 +30,7 @@ class MapScore {
 
   /// Of the pairs of which one node is in `f` and the other in `g`, two pieces with a frame each. Estimated from a part
   /// of them where they are many.
-  double between(const std::vector<Pose2>& pose_in_piece, const std::vector<std::size_t>& f,
+  double between(const std::vector<Pose2>& pose_in_submap, const std::vector<std::size_t>& f,
                  const std::vector<std::size_t>& g, const Pose2& f_from_g);
 
   /// Of one pair of scans.

@@ -20,7 +20,7 @@ inline constexpr double kContradicts_m = 1.0;
 inline constexpr double kContradicts_rad = 10 * kDegree;
 
 /// Pieces of a map that nothing joins lie so far apart: no scan sees so far.
-inline constexpr double kPiecesApart_m = 1e4;
+inline constexpr double kComponentsApart_m = 1e4;
 
 struct MapSearchOptions {
   int assemblies = 12;

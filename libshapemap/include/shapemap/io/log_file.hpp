@@ -26,8 +26,8 @@ struct LogReadOptions {
   double fov_rad = 0.0;      ///< first to last beam; 0: by convention
   RangeUnit range_unit = RangeUnit::kAuto;
   bool upside_down = false;
-  int sub_scans_per_position = 1;
-  double sub_scan_turn_rad = 90 * kDegree;
+  int sweeps_per_scan = 1;
+  double sweep_turn_rad = 90 * kDegree;
   std::string no_return_m = "auto";  ///< see no_return_choice()
 
   template <class Self, class Visit>
@@ -40,9 +40,9 @@ struct LogReadOptions {
           self.range_unit);
     visit(Field{"upside-down", "the laser is mounted upside down, or counts its beams clockwise without saying so"},
           self.upside_down);
-    visit(Field{"sub-scans", "sub-scans per position of a bare log", 1, 1000}, self.sub_scans_per_position);
+    visit(Field{"sub-scans", "sub-scans per position of a bare log", 1, 1000}, self.sweeps_per_scan);
     visit(Field{"sub-scan-turn-deg", "turn between the sub-scans of a bare log [deg]", -360, 360, kDegree},
-          self.sub_scan_turn_rad);
+          self.sweep_turn_rad);
     visit(Field{"no-return-m",
                 "readings that mean no return [m]: levels or bands such as 51.15,51.0-51.2; auto: learned; none"},
           self.no_return_m);

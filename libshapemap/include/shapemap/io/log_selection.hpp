@@ -23,7 +23,7 @@ struct SelectionOptions {
 };
 
 /// The log with the selected positions only. Throws ConfigError when that leaves none of a log that has some.
-Log select_positions(Log log, const SelectionOptions& options);
+Log select_scans(Log log, const SelectionOptions& options);
 
 /// Where the selected position `index` stood in the whole log.
 std::size_t index_in_whole_log(std::size_t index, const SelectionOptions& options);

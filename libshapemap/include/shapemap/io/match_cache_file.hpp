@@ -48,7 +48,7 @@ class MatchCacheFile : public MatchCache {
   void append(const std::string& bytes);
 
   std::string path_;
-  std::uint64_t num_positions_;
+  std::uint64_t num_scans_;
   int descriptor_ = -1;
   std::size_t num_resumed_ = 0;
   std::string warning_;

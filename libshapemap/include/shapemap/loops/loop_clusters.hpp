@@ -37,10 +37,10 @@ struct ClusterOptions {
   int least_nodes = 2;
 };
 
-/// `map_from_node` is the chain, of which only short pieces are trusted: pieces with the same `piece_of_node`.
+/// `map_from_node` is the chain, of which only short pieces are trusted: pieces with the same `submap_of_node`.
 /// Strongest first. Hypotheses that no other one supports make no cluster.
 std::vector<LoopCluster> loop_clusters(const std::vector<LoopCandidate>& candidates,
                                        const std::vector<Pose2>& map_from_node,
-                                       const std::vector<std::size_t>& piece_of_node, const ClusterOptions& options);
+                                       const std::vector<std::size_t>& submap_of_node, const ClusterOptions& options);
 
 }  // namespace shapemap

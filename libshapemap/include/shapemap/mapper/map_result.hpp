@@ -20,7 +20,7 @@ struct ScanResult {
   std::size_t session = 0;  ///< the recording that it is from
   int component = -1;       ///< index into MapResult::fragments; -1: no usable shape, in no fragment
   bool starts_component = false;
-  ScanMatch alignment;                   ///< against the scans before it; meaningless for the first position
+  ScanMatch match;                       ///< against the scans before it; meaningless for the first position
   std::size_t reference = kNoReference;  ///< the position that it is to, where that is not the last keyframe before it
   /// Loops hold this position where it is, even if that alignment was wrong.
   bool loop_constrained = false;
@@ -50,7 +50,7 @@ struct MapResult {
   const std::vector<PlacedScan>& placed() const;
 
   /// One line that says why a position is not in the map; empty for one that is.
-  std::string why_not_in_map(const ScanResult& position) const;
+  std::string why_not_in_map(const ScanResult& scan) const;
 };
 
 }  // namespace shapemap

@@ -23,7 +23,7 @@ struct ScanPair {
 
 struct AlignedPair {
   ScanPair pair;
-  ScanMatch alignment;
+  ScanMatch match;
   std::optional<RankedPose> given;    ///< the given pose as it is; nothing without one, or without shape
   std::optional<RankedPose> refined;  ///< the same, refined from there
   double seconds = 0.0;               ///< for `alignment`, without the views

@@ -25,7 +25,7 @@ struct TracedTarget {
 struct TracedAlignment {
   std::size_t query_index = 0;
   std::vector<TracedTarget> targets;
-  const ScanMatch& alignment;
+  const ScanMatch& match;
   const AlignTrace& steps;
 };
 

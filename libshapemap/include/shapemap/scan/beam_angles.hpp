@@ -34,10 +34,10 @@ struct EvenBeams {
 std::optional<EvenBeams> even_beams(const StatedAngles& stated, std::size_t num_beams);
 
 /// Gives `scan` an angle for each of its readings, in the order of the readings.
-void set_beam_angles(Sweep& scan, std::vector<double> angles_rad);
+void set_beam_angles(Sweep& sweep, std::vector<double> angles_rad);
 
 /// The same hits on evenly spaced beams, for formats that have no others: each reading goes to the nearest beam, and
 /// the nearer of two that meet there stays. A scan that is evenly spaced stays as it is.
-Sweep on_even_beams(const Sweep& scan);
+Sweep on_even_beams(const Sweep& sweep);
 
 }  // namespace shapemap

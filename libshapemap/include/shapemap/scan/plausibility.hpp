@@ -37,8 +37,8 @@ inline constexpr std::size_t kMostScans = 5'000'000;
 
 /// What makes a scan of `num_beams` beams impossible, such as "angle_step of 1e+12 rad, expected at most a full turn";
 /// empty when nothing does. The readings are not looked at: is_return() judges each by itself.
-std::string implausibility(const Sweep& scan, std::size_t num_beams);
-std::string implausibility(const Sweep& scan);
+std::string implausibility(const Sweep& sweep, std::size_t num_beams);
+std::string implausibility(const Sweep& sweep);
 /// The same of a pose that a log states, and of a time.
 std::string implausibility(const Pose2& pose);
 std::string implausible_time(double timestamp_s);
@@ -46,7 +46,7 @@ std::string implausible_time(double timestamp_s);
 std::string implausible_count(std::size_t num_before, const char* what);
 
 /// The first fault of a whole position: its time, its reference pose or one of its sub-scans.
-std::string implausibility(const Scan& position);
+std::string implausibility(const Scan& scan);
 
 /// Throws InputError that names the first position with a fault. For logs that come from elsewhere than a reader.
 void require_plausible(const Log& log);

@@ -51,7 +51,7 @@ struct ScanView {
 bool looks_all_round(const ScanView& view);
 
 /// Never fails: a position without returns has no points.
-ScanView view_of(const Scan& position, const ReturnOptions& returns, const PolylineOptions& polylines,
+ScanView view_of(const Scan& scan, const ReturnOptions& returns, const PolylineOptions& polylines,
                  const ShapeOptions& shape, const ViewOptions& options);
 
 }  // namespace shapemap

@@ -61,14 +61,14 @@ struct SweepShape {
   std::vector<ShapePoint> shape_points;
 };
 
-SweepShape sweep_shape(const Sweep& sweep, int sub_scan_index, const ReturnOptions& returns,
+SweepShape sweep_shape(const Sweep& sweep, int sweep_index, const ReturnOptions& returns,
                        const PolylineOptions& polylines, const ShapeOptions& options);
 
 /// The whole position. Never fails: a position without returns has no points.
-Shape shape_of(const Scan& position, const ReturnOptions& returns, const PolylineOptions& polylines,
+Shape shape_of(const Scan& scan, const ReturnOptions& returns, const PolylineOptions& polylines,
                const ShapeOptions& options);
 
-/// The same shape seen from another frame; `sub_scan_poses` (one per sub-scan, or empty) are applied first.
-Shape moved(const Shape& shape, const Pose2& b_from_a, const std::vector<Pose2>& sub_scan_poses = {});
+/// The same shape seen from another frame; `sweep_poses` (one per sub-scan, or empty) are applied first.
+Shape moved(const Shape& shape, const Pose2& b_from_a, const std::vector<Pose2>& sweep_poses = {});
 
 }  // namespace shapemap
