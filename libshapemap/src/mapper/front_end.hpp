@@ -4,65 +4,87 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "graph/keyframe_graph.hpp"
 #include "scan_tracker.hpp"
-#include "shapemap/core/observer.hpp"
 #include "shapemap/mapper/map_result.hpp"
 #include "shapemap/mapper/mapper_options.hpp"
-#include "shapemap/mapper/trace_sink.hpp"
 #include "shapemap/matching/match_cache.hpp"
 #include "shapemap/scan/scan.hpp"
 
 namespace shapemap {
 
-/// Each scan against the keyframe before it, with several hypotheses, of which the scans further back decide. Adds an
-/// entry for each position to `result`, without a place. `sink` and `store` may be null.
+/// A scan that comes in, and the recording that it is from. It is looked at during the call only.
+struct IncomingScan {
+  const Scan& scan;
+  std::size_t session = 0;
+};
+
+/// What a new keyframe brings to the graph.
+struct NewKeyframe {
+  Keyframe keyframe;
+  OdometryEdge edge;  ///< from the keyframe before; without candidates where there is none, or another session starts
+};
+
+/// What the front end makes of a scan. A scan with too few points of shape is neither attached nor a keyframe.
+struct TrackedScan {
+  std::size_t scan_index = 0;
+  std::size_t session = 0;
+  double timestamp_s = 0.0;
+  std::size_t num_sweeps = 0;
+  std::shared_ptr<const ScanView> view;
+  std::optional<MatchCandidate> attached;  ///< its pose in the frame of the last keyframe, which can replace it
+  std::optional<NewKeyframe> keyframe;
+};
+
+/// Matches each scan to the keyframe before it, with several candidates and those that keyframes further back lend
+/// where these are in doubt. What it makes of a scan depends on this scan and on those before it, and on nothing that
+/// is found out about the map: so it can run ahead of the back end.
 class FrontEnd {
  public:
-  FrontEnd(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink, MatchCache* store,
-           MapResult& result);
+  /// `cache` may be null. Keeps references to both.
+  FrontEnd(const MappingOptions& options, MatchCache* cache);
 
-  /// Goes on until there are `most_keyframes`, and some more. False when the log is at its end, or the observer asks to
-  /// stop: then what there is is whole.
-  bool extend(std::size_t most_keyframes);
+  /// One entry for each of `scans`, in their order. The result does not depend on how many come at a time; those that
+  /// come together are worked on in parallel. Scans are numbered from 0 in the order in which they come.
+  std::vector<TrackedScan> track(const std::vector<IncomingScan>& scans);
 
-  /// Keyframes may be taken out of it between two calls of extend(), but for the last few.
-  KeyframeGraph& graph() { return graph_; }
+  std::size_t num_scans() const { return num_scans_; }
+  double shape_s() const { return shape_s_; }  ///< spent on views so far, summed over threads
+  double match_s() const { return match_s_; }  ///< spent on matching so far, likewise
 
  private:
+  /// A keyframe that those to come are matched to.
+  struct RecentKeyframe {
+    std::size_t scan_index = 0;
+    std::size_t session = 0;
+    std::shared_ptr<const ScanView> view;
+    std::vector<MatchCandidate> candidates;  ///< of the edge from the keyframe before
+    std::optional<Pose2> best_own;           ///< the best pose in the frame of the keyframe before, by these two alone
+  };
+
   double timed_for(std::size_t count, const std::function<void(std::size_t)>& work) const;
-  void view_scans(std::size_t first, std::size_t last);
-  Keyframe viewed(std::size_t scan_index) const;
-  void take(Keyframe scan);
-  void link_keyframes(std::size_t first_new);
-  void expect(const ExpectedPose& expected, std::size_t edge);
-  void expect_the_usual();
-  void expect_the_usual(const MotionPrior& prior, std::size_t edge);
-  std::vector<MatchCandidate> aligned(std::size_t reference, std::size_t query, SearchKind search,
+  std::shared_ptr<const ScanView> view(const Scan& scan) const;
+  TrackedScan viewed(const IncomingScan& incoming, std::size_t scan_index) const;
+  std::vector<std::shared_ptr<const ScanView>> views_of_sweeps(const Scan& scan) const;
+  void track(TrackedScan& scan);
+  void add_edges(std::size_t first, std::vector<NewKeyframe*>& added);
+  bool has_edge(std::size_t recent) const;
+  void finish_edge(std::size_t recent, const std::vector<MatchCandidate>& multi_reference, NewKeyframe& added);
+  std::vector<MatchCandidate> matched(std::size_t reference, std::size_t query, SearchKind search,
                                       const MatchSearchOptions& options) const;
-  std::vector<MatchCandidate> multi_reference_candidates(std::size_t edge) const;
-  bool in_doubt(const std::vector<MatchCandidate>& edge) const;
-  std::vector<std::vector<double>> three_scan_scores(std::size_t edge) const;
-  void let_views_go();
+  std::vector<MatchCandidate> multi_reference_candidates(std::size_t recent) const;
 
-  bool starts_session(std::size_t edge) const;
-  std::vector<MatchCandidate>& candidates(std::size_t edge) { return graph_.edges[edge].candidates; }
-  const std::vector<MatchCandidate>& candidates(std::size_t edge) const { return graph_.edges[edge].candidates; }
-  const ScanView& view_of_keyframe(std::size_t i) const { return *graph_.keyframes[i].view; }
-  std::size_t scan_of_keyframe(std::size_t keyframe) const { return graph_.keyframes[keyframe].scan_index; }
-
-  const Log& log_;
   const MappingOptions& options_;
-  RunObserver& observer_;
-  TraceSink* sink_;
-  MatchCache* store_;
-  MapResult& result_;
+  MatchCache* cache_;
   ScanTracker tracker_;
-  std::size_t next_ = 0;       ///< the first position that was not looked at
-  std::size_t last_seen_ = 0;  ///< the last position with shape
-  KeyframeGraph graph_;
+  std::size_t num_scans_ = 0;
+  std::size_t last_with_shape_ = 0;
+  std::vector<RecentKeyframe> recent_;  ///< the last few, and those that are being added
+  double shape_s_ = 0.0;
+  double match_s_ = 0.0;
 };
 
 }  // namespace shapemap

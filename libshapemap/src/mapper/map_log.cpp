@@ -7,7 +7,9 @@
 #include "methods.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/grid/scan_consistency.hpp"
+#include "shapemap/mapper/mapper.hpp"
 #include "shapemap/mapper/mirror_check.hpp"
+#include "shapemap/scan/joined_logs.hpp"
 #include "shapemap/scan/plausibility.hpp"
 
 namespace shapemap {
@@ -18,6 +20,27 @@ int largest(const std::vector<Component>& components) {
   const auto fewer = [](const Component& a, const Component& b) { return a.scans.size() < b.scans.size(); };
   const auto found = std::max_element(components.begin(), components.end(), fewer);
   return found == components.end() ? -1 : static_cast<int>(found - components.begin());
+}
+
+/// Scans that are worked on together, and between which the observer is asked; part of no result.
+constexpr std::size_t kBlock = 32;
+
+MapResult map_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
+                       MatchCache* store) {
+  LiveOptions live;
+  live.publish = false;
+  Mapper mapper(options, live, &observer, sink, store);
+  observer.on_stage("chain");
+  std::size_t session = 0;
+  for (const LogPart& part : parts_of(log)) {
+    for (std::size_t first = part.first; first < part.last && observer.keep_going(); first += kBlock) {
+      const std::size_t last = std::min(first + kBlock, part.last);
+      mapper.add_scans(&log.scans[first], last - first, session);
+      observer.on_progress(last, log.scans.size());
+    }
+    ++session;
+  }
+  return mapper.finish();
 }
 
 }  // namespace
@@ -43,7 +66,7 @@ MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& ob
     if (options.run.method == Method::kPaper) {
       chain_by_paper(log, options, observer, sink, result);
     } else {
-      map_robustly(log, options, observer, sink, store, result);
+      result = map_robustly(log, options, observer, sink, store);
     }
   } catch (const Interrupted&) {
     result.interrupted = true;

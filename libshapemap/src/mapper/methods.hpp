@@ -16,8 +16,4 @@ namespace shapemap {
 void chain_by_paper(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
                     MapResult& result);
 
-/// The robust one: a chain of keyframes, in which places are known again.
-void map_robustly(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
-                  MatchCache* store, MapResult& result);
-
 }  // namespace shapemap

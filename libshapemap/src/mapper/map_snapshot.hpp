@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+
+#include "graph/keyframe_graph.hpp"
+#include "inference/optimized_map.hpp"
+#include "shapemap/mapper/map.hpp"
+#include "shapemap/mapper/map_result.hpp"
+
+namespace shapemap {
+
+/// The map of a solved graph, without a version. `num_scans` have come so far.
+Map map_snapshot(const KeyframeGraph& graph, const OptimizedMap& map, std::size_t num_scans);
+
+/// The map that a result is, without a version.
+Map map_snapshot(const MapResult& result);
+
+}  // namespace shapemap

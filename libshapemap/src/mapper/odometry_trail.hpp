@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "front_end.hpp"
+#include "shapemap/mapper/map.hpp"
+#include "shapemap/mapper/mapper.hpp"
+
+namespace shapemap {
+
+/// Where scans are by the matches from each keyframe to the next alone, and from there in the latest map: what is known
+/// of a scan before the map has it.
+class OdometryTrail {
+ public:
+  explicit OdometryTrail(const ConfidenceOptions& options) : options_(options) {}
+
+  /// Adds the next scan. `map` is the latest one, or null.
+  ScanUpdate add(const TrackedScan& scan, const Map* map);
+
+ private:
+  /// A scan in the frame of the first keyframe that matches join it to.
+  struct Step {
+    std::size_t stretch = 0;  ///< number of that keyframe among such
+    Pose2 stretch_from_robot;
+    bool has_pose = false;
+  };
+
+  void match(const TrackedScan& scan, ScanUpdate& update);
+  ScanPose in_map(const Step& step, const Map* map) const;
+
+  const ConfidenceOptions& options_;
+  std::vector<Step> steps_;  ///< of each scan
+  std::size_t last_keyframe_ = kNoReference;
+  std::size_t num_stretches_ = 0;
+};
+
+}  // namespace shapemap
