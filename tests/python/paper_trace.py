@@ -77,7 +77,7 @@ def result_record(index: int) -> dict[str, Any]:
         "record": "result",
         "index": index,
         "fragment": 0,
-        "starts_component": index == 0,
+        "starts_fragment": index == 0,
         "fragment_from_robot": FOUND[index],
         "robot_from_sub_scan": [[0.0, 0.0, 0.0], CORRECTION if index == 1 else [0.0, 0.0, 0.0]],
     }

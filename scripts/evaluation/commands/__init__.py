@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The commands of scripts/evaluate.py, a module each; a command is loaded when it is asked for, and imported by none."""
+"""The commands of scripts/evaluate.py, a module each, which is loaded when it is asked for and imported by no other."""
 
 from __future__ import annotations
 

@@ -49,11 +49,16 @@ def add_program(parser: argparse.ArgumentParser, what: str = "the mapper") -> No
     )
 
 
+def runnable(parser: argparse.ArgumentParser, path: Path, what: str) -> Path:
+    """The absolute path of a program, as a bare name would be looked up elsewhere. Wrong usage if it cannot be run."""
+    if not os.access(path, os.X_OK) or path.is_dir():
+        parser.error(f"{what}: {path} is not a program; build it with `cmake --build --preset release`")
+    return path.resolve()
+
+
 def require_program(parser: argparse.ArgumentParser, arguments: argparse.Namespace) -> None:
-    """Wrong usage unless --cli can be run. Its path becomes absolute: a bare name would be looked up elsewhere."""
-    if not os.access(arguments.cli, os.X_OK):
-        parser.error(f"--cli: {arguments.cli} is not a program; build it with `cmake --build --preset release`")
-    arguments.cli = arguments.cli.resolve()
+    """Makes --cli absolute. Wrong usage unless it can be run."""
+    arguments.cli = runnable(parser, arguments.cli, "--cli")
 
 
 def add_passed_on(parser: argparse.ArgumentParser) -> None:

@@ -18,8 +18,8 @@ from evaluation.common.programs import Failure
 from evaluation.judging.hard_scenes import SCENES
 from evaluation.logs.variants import VariedLog
 from evaluation.mapping.mapper import Mapper
-from evaluation.simulation.robot import RobotOptions
-from evaluation.simulation.simulation import Simulation, SimulationOptions, simulate
+from evaluation.simulation.arena_options import hard_arena
+from evaluation.simulation.simulation import Simulation, simulate
 from evaluation.simulation.write import nist_text
 
 from .edge_fits import Candidates, is_place, slides_to
@@ -119,9 +119,7 @@ def links_of_variant(log: VariedLog, mapper: Mapper) -> Links:
 
 
 def links_of_arena(seed: int, mapper: Mapper) -> Links:
-    """16 positions, 1.5 m apart, unknown headings."""
-    robot = RobotOptions(num_positions=16, spacing_m=1.5, heading_uncertainty_deg=180.0)
-    return links_of_simulation(simulate(SimulationOptions(seed=seed, robot=robot)), mapper)
+    return links_of_simulation(simulate(hard_arena(seed)), mapper)
 
 
 def links_of_scene(name: str, seed: int, mapper: Mapper) -> Links:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether each scan is placed right against the scan before it: the relative pose of both, held against the reference."""
+"""Whether each scan is placed right against the scan before it, by the relative pose of both and the reference."""
 
 from __future__ import annotations
 

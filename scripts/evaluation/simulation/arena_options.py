@@ -17,6 +17,12 @@ from .simulation import SimulationOptions
 Option = tuple[str, Callable[[str], Any], Any, str, str]  # name, type, default, metavar, help
 
 
+def hard_arena(seed: int) -> SimulationOptions:
+    """16 positions, 1.5 m apart, whose headings are unknown."""
+    robot = RobotOptions(num_positions=16, spacing_m=1.5, heading_uncertainty_deg=180.0)
+    return SimulationOptions(seed=seed, robot=robot)
+
+
 def option_groups() -> dict[str, list[Option]]:
     """The options by the title of their group; each has the default of what it sets."""
     arena, robot, sensor = ArenaOptions(), RobotOptions(), SensorOptions()

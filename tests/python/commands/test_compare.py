@@ -206,4 +206,4 @@ def test_other_files_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[s
     (tmp_path / "a.json").write_text("{", encoding="utf-8")
     assert compare_command.main([path, good]) == 3
     assert compare_command.main([str(tmp_path / "gone.json"), good]) == 3
-    assert capsys.readouterr().err.count("compare.py: ") == 3
+    assert capsys.readouterr().err.count("evaluate.py compare: ") == 3

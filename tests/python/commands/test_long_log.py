@@ -131,7 +131,7 @@ def test_what_is_far_off_is_told_in_stretches() -> None:
 
 def test_what_reading_took_is_told_for_each_part_of_the_log() -> None:
     marks = [
-        {"num_positions": 1000.0 * k, "wall_s": 0.0, "cpu_s": cpu_s, "peak_memory_mib": 50.0 + k}
+        {"num_scans": 1000.0 * k, "wall_s": 0.0, "cpu_s": cpu_s, "peak_memory_mib": 50.0 + k}
         for k, cpu_s in enumerate((10.0, 30.0, 50.0, 90.0), 1)
     ]
     run = Growth(4200, milestones=marks)

@@ -124,7 +124,7 @@ def test_a_snapshot_has_tables_chosen_pictures_and_the_command(folder: Path) -> 
     options = ["--snapshot", str(snapshot), "--snapshot-logs", "line,absent"]
     assert run(folder, "--only", "line", "--methods", "robust,ceiling", *options) == 0
     text = snapshot.read_text(encoding="utf-8")
-    assert "scripts/evaluate.py --datasets" in text
+    assert "scripts/evaluate.py maps --datasets" in text
     assert "--snapshot-logs line,absent" in text
     assert "failures of" not in text
     pictures = re.findall(r"\]\((\S+\.png)\)", text)

@@ -111,10 +111,10 @@ def test_an_evaluation_that_dies_is_a_row(
     tmp_path: Path, programs: Programs, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     log = line_log(tmp_path)
-    monkeypatch.setattr("evaluation.runs.read_trajectory", lambda *_: os._exit(9))
+    monkeypatch.setattr("evaluation.maps.runs.read_trajectory", lambda *_: os._exit(9))
     (result,) = run_all([job(tmp_path, "robust", log, programs)])
     assert result["reason"] == "the evaluation of this run ended with exit code 9"
-    monkeypatch.setattr("evaluation.runs.read_trajectory", lambda *_: [1 / 0])
+    monkeypatch.setattr("evaluation.maps.runs.read_trajectory", lambda *_: [1 / 0])
     (result,) = run_all([job(tmp_path, "robust", log, programs)])
     assert "ZeroDivisionError" in result["reason"]
     assert capfd.readouterr().err.count("FAILED: robust on line") == 2
