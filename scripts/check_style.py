@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+import ast
 import re
 import sys
 from collections.abc import Iterator
@@ -14,6 +15,11 @@ from pathlib import Path
 
 # A stage includes only itself and those before it.
 STAGES = ("core", "scan", "shape", "match", "align", "graph", "map", "io")
+# A room of scripts/evaluation/ imports only itself and those before it, and a command is imported by no other module.
+ROOMS = (
+    *("common", "simulation", "logs", "mapping", "judging", "pairs", "maps", "fitting", "figures"),
+    "commands",
+)
 FOLDERS = (".ci", "apps", "cmake", "libshapemap", "python", "scripts", "tests")
 SUFFIXES = (".cmake", ".cpp", ".hpp", ".in", ".py", ".sh")
 CPP_SUFFIXES = (".cpp", ".hpp", ".hpp.in")
@@ -70,6 +76,23 @@ class SourceFile:
         """The stage folder of libshapemap that the file lies in."""
         found = re.match(r"libshapemap/(?:include/shapemap|src)/(\w+)/", self.path)
         return found.group(1) if found else None
+
+    @property
+    def room(self) -> str | None:
+        """The folder of scripts/evaluation/ that the file lies in."""
+        found = re.match(r"scripts/evaluation/(\w+)/", self.path)
+        return found.group(1) if found else None
+
+    def imports(self) -> Iterator[tuple[int, str]]:
+        """Line number and whole name of what a Python file imports, such as evaluation.logs.datasets.select."""
+        package = self.path.removeprefix("scripts/").split("/")[:-1]
+        for node in ast.walk(ast.parse("\n".join(self.lines), self.path)):
+            if isinstance(node, ast.Import):
+                yield from ((node.lineno, alias.name) for alias in node.names)
+            elif isinstance(node, ast.ImportFrom):
+                above = package[: len(package) + 1 - node.level] if node.level else []
+                module = [*above, *([node.module] if node.module else [])]
+                yield from ((node.lineno, ".".join([*module, alias.name])) for alias in node.names)
 
     def includes(self) -> Iterator[tuple[int, str, bool]]:
         """Line number, included path and whether it is quoted."""
@@ -131,6 +154,25 @@ def check_layers(source: SourceFile) -> Iterator[str]:
             yield f"{where}: '{stage}' must not include '{path}', which comes after it"
 
 
+def check_imports(source: SourceFile, executables: set[str]) -> Iterator[str]:
+    """Of the Python below scripts/: library modules know neither executables nor commands."""
+    if not source.path.startswith("scripts/") or source.path.count("/") < 2 or not source.path.endswith(".py"):
+        return
+    if source.room is not None and source.room not in ROOMS:
+        yield f"{source.path}:1: folder '{source.room}' is none of: {', '.join(ROOMS)}"
+        return
+    for number, name in source.imports():
+        where, (top, *below) = f"{source.path}:{number}", name.split(".")
+        if top in executables:
+            yield f"{where}: '{top}' is an executable, which no module imports"
+        elif top != "evaluation" or not below:
+            continue
+        elif below[0] == "commands":
+            yield f"{where}: '{name}' is a command, which no module imports"
+        elif source.room and below[0] in ROOMS and ROOMS.index(below[0]) > ROOMS.index(source.room):
+            yield f"{where}: '{source.room}' must not import '{name}', which comes after it"
+
+
 def check_silence(source: SourceFile) -> Iterator[str]:
     if not source.path.startswith("libshapemap/") or not source.is_cpp:
         return
@@ -157,9 +199,11 @@ def check_confinement(sources: list[SourceFile], rule: Confinement) -> Iterator[
 
 def violations(root: Path) -> list[str]:
     sources = source_files(root)
+    executables = {Path(s.path).stem for s in sources if s.path.startswith("scripts/") and s.path.count("/") == 1}
     found: list[str] = []
     for source in sources:
         found += [*check_text(source), *check_layers(source), *check_silence(source)]
+        found += check_imports(source, executables)
     for rule in CONFINEMENTS:
         found += check_confinement(sources, rule)
     return sorted(found)

@@ -93,6 +93,56 @@ def test_what_keeps_the_rules_passes(tree: Path, path: str, text: str) -> None:
     assert check(tree) == (0, "style: ok\n")
 
 
+PYTHON_SPDX = "# SPDX-License-Identifier: GPL-3.0-or-later\n"
+LOGS, COMMAND = "scripts/evaluation/logs/a.py", "scripts/evaluation/commands/a.py"
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "complaint"),
+    [
+        (LOGS, "from evaluation.commands.maps import main", "a.py:2: 'evaluation.commands.maps.main' is a command"),
+        (LOGS, "import evaluation.commands.maps", "'evaluation.commands.maps' is a command"),
+        (LOGS, "from evaluation import commands", "'evaluation.commands' is a command"),
+        (LOGS, "from ..commands import maps", "'evaluation.commands.maps' is a command"),
+        (LOGS, "from .. import commands", "'evaluation.commands' is a command"),
+        (LOGS, "def f():\n    from evaluation.commands import maps", "a.py:3: 'evaluation.commands.maps' is a command"),
+        (LOGS, "from evaluation import (\n    commands,\n)", "a.py:2: 'evaluation.commands' is a command"),
+        (LOGS, "from evaluate import main", "'evaluate' is an executable"),
+        (LOGS, "import convert_logs", "'convert_logs' is an executable"),
+        ("scripts/log_conversion/a.py", "import evaluate", "'evaluate' is an executable"),
+        (LOGS, "from evaluation.maps.runs import Job", "'logs' must not import 'evaluation.maps.runs.Job'"),
+        (LOGS, "from ..judging.loops import Limits", "'logs' must not import 'evaluation.judging.loops.Limits'"),
+        (COMMAND, "from evaluation.commands.maps import main", "is a command"),
+        (COMMAND, "from .maps import main", "'evaluation.commands.maps.main' is a command"),
+        (COMMAND, "from . import maps", "'evaluation.commands.maps' is a command"),
+        ("scripts/evaluation/util/a.py", "", "folder 'util' is none of"),
+    ],
+)
+def test_a_module_imports_what_comes_before_it(tree: Path, path: str, text: str, complaint: str) -> None:
+    for executable in ("evaluate", "convert_logs"):
+        write(tree, f"scripts/{executable}.py", PYTHON_SPDX + "from evaluation.commands import main\n")
+    write(tree, path, PYTHON_SPDX + text)
+    status, output = check(tree)
+    assert status == 1
+    assert complaint in output
+    assert output.count("\n") == 1, output
+
+
+@pytest.mark.parametrize(
+    ("path", "text"),
+    [
+        (LOGS, "from evaluation.common.files import write_whole\nfrom .datasets import select\nfrom . import datasets"),
+        (LOGS, "from ..simulation.read import read_scan_log\nfrom log_conversion.model import LaserLog\nimport json"),
+        (COMMAND, "from evaluation.maps.runs import Job\nfrom evaluation.figures import album"),
+        ("scripts/evaluate.py", "from evaluation.commands import main"),
+        ("tests/python/commands/test_a.py", "from evaluation.commands import maps\nimport convert_logs"),
+    ],
+)
+def test_imports_of_what_comes_before_pass(tree: Path, path: str, text: str) -> None:
+    write(tree, path, PYTHON_SPDX + text)
+    assert check(tree) == (0, "style: ok\n")
+
+
 @pytest.mark.parametrize("path", ["apps/a/main.cpp", "scripts/a.py", "scripts/a.sh", ".ci/run", "tests/CMakeLists.txt"])
 def test_every_source_names_its_licence(tree: Path, path: str) -> None:
     write(tree, path, "\n\n# SPDX-License-Identifier: GPL-3.0-or-later\n")

@@ -53,8 +53,8 @@ def test_a_log_that_fails_is_left_out_and_said(tmp_path: Path) -> None:
     cli.write_text(FAKE_CLI)
     cli.chmod(0o755)
     out = tmp_path / "maps.png"
-    command = [sys.executable, str(PROJECT / "scripts/evaluate.py"), "gallery", "good.log", "bad.log", "--out", str(out)]
-    run = subprocess.run([*command, "--cli", str(cli)], capture_output=True, text=True, check=False)
+    command = [sys.executable, str(PROJECT / "scripts/evaluate.py"), "gallery", "good.log", "bad.log"]
+    run = subprocess.run([*command, "--out", str(out), "--cli", str(cli)], capture_output=True, text=True, check=False)
     assert run.returncode == 1
     assert "bad.log: exit code 1: no such log" in run.stderr
     assert out.read_bytes().startswith(b"\x89PNG")

@@ -107,7 +107,8 @@ def test_figures_of_a_trace_need_no_mapper(tmp_path):
 def test_bad_input_is_told_in_one_line(tmp_path, capsys):
     trace = write_trace(tmp_path / "hand.jsonl", small_trace())
     (tmp_path / "bad.tum").write_text("100 1 2 3\n")
-    assert paper_figures_command.main([str(trace), "--out", str(tmp_path), "--reference", str(tmp_path / "bad.tum")]) == 2
+    words = [str(trace), "--out", str(tmp_path), "--reference", str(tmp_path / "bad.tum")]
+    assert paper_figures_command.main(words) == 2
     assert "bad.tum:1: expected 8 numbers" in capsys.readouterr().err
     mapper = tmp_path / "mapper"
     mapper.write_text(f"#!{sys.executable}\nimport sys\nsys.exit('no map today')\n")

@@ -66,7 +66,7 @@ def test_new_names_of_members_and_other_times_are_no_difference(
 @pytest.mark.parametrize(
     ("change", "output", "where"),
     [
-        ("files[of('--trajectory')] += '3 2 0 0 0 0 0 1\\n'", "trajectory", "from entry 2 on, 0 differ, 2 and 3 in all"),
+        ("files[of('--trajectory')] += '3 2 0 0 0 0 0 1\\n'", "trajectory", "from entry 2 on, 0 differ, 2 and 3"),
         ("files[of('--out')] += '!'", "picture", "23 and 24 bytes"),
         ("files[of('--out').replace('.png', '.yaml')] += 'x'", "map.yaml", "from entry 1 on"),
         ("files[of('--carmen-out')] = 'FLASER 0\\nFLASER 1\\n'", "CARMEN log", "from entry 1 on, 1 differ of 2"),
