@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Judging alignments of single pairs of positions: logs with known poses, verdicts, tables, pictures."""
+"""Alignments of single pairs of positions, judged: runs of `shapemap-cli align`, verdicts, tables, pictures."""
