@@ -9,25 +9,13 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from evaluation.common.command_line import (
-    add_jobs,
-    add_json,
-    add_method,
-    add_passed_on,
-    add_program,
-    add_seeds,
-    add_timeout,
-    command_parser,
-    complain,
-    require_program,
-)
+from evaluation.common.command_line import command_parser, complain, require_program
 from evaluation.common.files import write_json, write_whole
-from evaluation.common.parallel import run_all
 from evaluation.common.programs import Failure
 from evaluation.judging.arena_pairs import PairResult, evaluate_pairs, lost_run, stages_of
 from evaluation.judging.arena_rates import Rate, all_rates, markdown, sureness
-from evaluation.mapping.mapper import Mapper
-from evaluation.simulation.arena_options import add_arena_arguments, options_from
+from evaluation.mapping.options import add_arena_runs, arena_mapper, run_arenas
+from evaluation.simulation.arena_options import options_from
 from evaluation.simulation.simulation import consecutive_overlaps, simulate
 from evaluation.simulation.write import nist_text
 
@@ -62,12 +50,11 @@ def run_seed(seed: int, arguments: argparse.Namespace) -> Run:
     """Simulate, map and judge one seed in a folder of its own."""
     simulation = simulate(options_from(arguments, seed))
     overlaps = consecutive_overlaps(simulation)
-    mapper = Mapper(arguments.cli, ("--method", arguments.method, *arguments.arg), arguments.timeout_s)
     with tempfile.TemporaryDirectory(prefix=f"arena{seed}_") as name:
         log = Path(name) / "arena.nist"
         write_whole(log, nist_text(simulation))
         try:
-            report, _ = mapper.run([log], Path(name))
+            report, _ = arena_mapper(arguments).run([log], Path(name))
         except Failure as failure:
             return Run(seed, lost_run(seed, overlaps, str(failure)), str(failure), None)
     pairs = evaluate_pairs(simulation, report, overlaps)
@@ -105,15 +92,8 @@ def content(runs: list[Run], rates: list[Rate], arguments: argparse.Namespace) -
 
 def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     parser = command_parser(__name__, __doc__, EXAMPLE)
-    add_seeds(parser, "0-39", of="seeds of the arenas, ")
-    add_program(parser)
-    add_method(parser)
-    add_passed_on(parser)
-    add_jobs(parser, "arenas")
-    add_timeout(parser, 300.0)
-    add_json(parser, "rates and every pair")
     parser.add_argument("--failures", type=Path, metavar="DIR", help="write a picture of each pair that failed")
-    add_arena_arguments(parser)
+    add_arena_runs(parser, "rates and every pair")
     arguments = parser.parse_args(argv)
     require_program(parser, arguments)
     return arguments
@@ -121,11 +101,7 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
 
 def main(argv: list[str] | None = None) -> int:
     arguments = parse_arguments(argv)
-    try:
-        runs = run_all(run_seed, [(seed, arguments) for seed in arguments.seeds], arguments.jobs)
-    except ValueError as error:
-        complain(__name__, str(error))
-        return 2
+    runs = run_arenas(__name__, run_seed, arguments)
     pairs = [pair for run in runs for pair in run.pairs]
     rates = all_rates(pairs)
     print(f"{markdown(rates)}\n\n{sureness(pairs)}")

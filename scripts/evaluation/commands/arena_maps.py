@@ -9,20 +9,8 @@ from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 
-from evaluation.common.command_line import (
-    add_jobs,
-    add_json,
-    add_method,
-    add_passed_on,
-    add_program,
-    add_seeds,
-    add_timeout,
-    command_parser,
-    complain,
-    require_program,
-)
+from evaluation.common.command_line import command_parser, require_program
 from evaluation.common.files import write_json, write_whole
-from evaluation.common.parallel import run_all
 from evaluation.common.poses import Array
 from evaluation.common.programs import Failure
 from evaluation.common.tum import read_tum
@@ -38,8 +26,8 @@ from evaluation.judging.whole_maps import (
     not_right,
     summary,
 )
-from evaluation.mapping.mapper import Mapper
-from evaluation.simulation.arena_options import add_arena_arguments, options_from
+from evaluation.mapping.options import add_arena_runs, arena_mapper, run_arenas
+from evaluation.simulation.arena_options import options_from
 from evaluation.simulation.simulation import Simulation, simulate
 from evaluation.simulation.write import nist_text
 
@@ -78,8 +66,7 @@ def run_seed(seed: int, arguments: argparse.Namespace) -> WholeMap:
     truth = simulation.drive.map_from_robot
     if arguments.ceiling:
         return judge(seed, truth, [CEILINGS[arguments.ceiling](simulation)])
-    passed_on = ("--threads", "1", "--method", arguments.method, *arguments.arg)
-    mapper = Mapper(arguments.cli, passed_on, arguments.timeout_s)
+    mapper = arena_mapper(arguments, "--threads", "1")
     with tempfile.TemporaryDirectory(prefix=f"arena{seed}_") as name:
         folder = Path(name)
         write_whole(folder / "arena.nist", nist_text(simulation))
@@ -109,18 +96,11 @@ def add_ceiling(parser: argparse.ArgumentParser) -> None:
 
 def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     parser = command_parser(__name__, __doc__, EXAMPLE)
-    add_seeds(parser, "0-39", of="seeds of the arenas, ")
-    add_program(parser)
-    add_method(parser)
-    add_passed_on(parser)
     add_ceiling(parser)
-    add_jobs(parser, "arenas")
-    add_timeout(parser, 300.0)
-    add_json(parser, "what became of each seed, with its largest errors")
     parser.add_argument(
         "--pictures", type=Path, metavar="DIR", help="write a picture of each map that is not whole and right"
     )
-    add_arena_arguments(parser)
+    add_arena_runs(parser, "what became of each seed, with its largest errors")
     parser.set_defaults(heading_uncertainty_deg=180.0)  # the hardest: as in the figures of the docs
     arguments = parser.parse_args(argv)
     if not arguments.ceiling:
@@ -130,11 +110,7 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
 
 def main(argv: list[str] | None = None) -> int:
     arguments = parse_arguments(argv)
-    try:
-        maps = run_all(run_seed, [(seed, arguments) for seed in arguments.seeds], arguments.jobs)
-    except ValueError as error:
-        complain(__name__, str(error))
-        return 2
+    maps = run_arenas(__name__, run_seed, arguments)
     print("\n\n".join(part for part in (summary(maps), links_table(maps), not_right(maps)) if part))
     if arguments.json:
         rows = [{**asdict(one), "verdict": one.verdict} for one in maps]

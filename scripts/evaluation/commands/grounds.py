@@ -10,14 +10,14 @@ from itertools import product
 from pathlib import Path
 
 from evaluation.common.argument_types import number, some_of
-from evaluation.common.command_line import add_jobs, add_seeds, command_parser
+from evaluation.common.command_line import command_parser
 from evaluation.common.files import write_json, write_whole
 from evaluation.common.parallel import run_all
 from evaluation.common.tables import table
 from evaluation.judging.map_score import MapScore, mapped_text, num_faults
 from evaluation.logs.reference_log import strip_nist
 from evaluation.mapping.mapper import Mapper
-from evaluation.mapping.options import add_mapper_arguments, mapper_from
+from evaluation.mapping.options import add_walk_arguments, mapper_from
 from evaluation.simulation.grounds import GROUNDS, simulate_ground
 from evaluation.simulation.write import nist_text, tum_text
 
@@ -59,11 +59,8 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
         metavar="LIST",
         help=f"of {', '.join(GROUNDS)} (default all)",
     )
-    add_seeds(parser, "0-3")
     add("--step-m", type=number(0.05, 100), default=1.0, metavar="M", help="between scans (default %(default)s)")
-    add_jobs(parser, "logs")
-    add("--logs", type=Path, metavar="DIR", help="write the logs, with true poses, and these alone as TUM")
-    add_mapper_arguments(parser)
+    add_walk_arguments(parser, "0-3")
     return parser.parse_args(argv)
 
 

@@ -10,7 +10,7 @@ from itertools import product
 from pathlib import Path
 
 from evaluation.common.argument_types import number, numbers
-from evaluation.common.command_line import add_jobs, add_seeds, command_parser
+from evaluation.common.command_line import command_parser
 from evaluation.common.files import write_json, write_whole
 from evaluation.common.parallel import run_all
 from evaluation.common.tables import table
@@ -18,7 +18,7 @@ from evaluation.common.tum import tum_line
 from evaluation.judging.map_score import MapScore, mapped_text, num_faults
 from evaluation.logs.reference_log import strip_nist
 from evaluation.mapping.mapper import Mapper
-from evaluation.mapping.options import add_mapper_arguments, mapper_from
+from evaluation.mapping.options import add_walk_arguments, mapper_from
 from evaluation.simulation.sweeps import SweepOptions, simulate_sweeps, sweep_text
 
 EXAMPLE = """The laser is carried at 0.8 m/s through a furnished building, and sways. A pair of consecutive scans is
@@ -80,10 +80,7 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
     add("--rate", type=numbers(1, 50), default=[7.0], metavar="LIST", help="sweeps a second (default 7)")
     add("--share", type=number(0, 1), default=1.0, metavar="X", help="of its period that a sweep takes (default 1)")
     add("--seconds", type=number(1, 3600), default=40.0, metavar="S", help="of the walk at most (default 40)")
-    add_seeds(parser, "0-4")
-    add_jobs(parser, "logs")
-    add("--logs", type=Path, metavar="DIR", help="write the logs, with true poses, and these alone as TUM")
-    add_mapper_arguments(parser)
+    add_walk_arguments(parser, "0-4")
     return parser.parse_args(argv)
 
 
