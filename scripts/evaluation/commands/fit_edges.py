@@ -29,8 +29,7 @@ from evaluation.fitting.edge_fits import (
 )
 from evaluation.fitting.known_edges import Links, links_of_arena, links_of_scene, links_of_variant
 from evaluation.logs.datasets import DatasetError
-from evaluation.logs.selection import parser_for_logs, selected_logs
-from evaluation.logs.variants import VariantError, varied
+from evaluation.logs.selection import parser_for_logs, selected_variants
 from evaluation.mapping.options import add_mapper_arguments, mapper_from
 
 EXAMPLE = """example, what the weights were fitted to, and what they were tried on:
@@ -97,9 +96,8 @@ def called(function: Callable[..., Links], *words: Any) -> Links:
 def main(argv: list[str] | None = None) -> int:
     arguments = parse_arguments(argv)
     try:
-        logs, num_missing = selected_logs(__name__, arguments)
-        wanted = [varied(log, variant) for log in logs for variant in arguments.variants]
-    except (DatasetError, VariantError, OSError) as error:
+        wanted, num_missing = selected_variants(__name__, arguments)
+    except (DatasetError, OSError) as error:
         complain(__name__, str(error))
         return 3
     mapper = mapper_from(arguments)

@@ -57,7 +57,7 @@ def main(argv: list[str] | None = None) -> int:
         try:
             scores.append(score_log(log, arguments.cli.resolve(), mapper_arguments, arguments.every))
         except (Failure, OSError, ValueError) as error:
-            complain(__name__, f"{log.name}: {error}")
+            complain(__name__, str(error))
     if scores:
         print(markdown(scores))
     return 0 if len(scores) == len(arguments.logs) else 1

@@ -20,7 +20,8 @@ from evaluation.common.command_line import add_jobs, add_program, add_seeds, com
 from evaluation.common.parallel import run_all
 from evaluation.common.programs import Failure, run_quietly
 from evaluation.common.shares import Share
-from evaluation.common.tables import table as markdown, table_head, table_row
+from evaluation.common.tables import table as markdown
+from evaluation.common.tables import table_head, table_row
 from evaluation.logs.reference_log import opened
 from evaluation.simulation.no_return_lasers import Mask, SensorLog
 from evaluation.simulation.no_return_logs import CODED, KINDS, NoReturnLog, simulate_no_return_log

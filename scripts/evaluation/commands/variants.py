@@ -16,8 +16,8 @@ from evaluation.common.tables import table
 from evaluation.judging.loops import false_loops
 from evaluation.judging.map_score import MapScore, mapped_text
 from evaluation.logs.datasets import DatasetError
-from evaluation.logs.selection import parse_with_logs, parser_for_logs, selected_logs
-from evaluation.logs.variants import KINDS, VariantError, VariedLog, parse_variant, varied
+from evaluation.logs.selection import parse_with_logs, parser_for_logs, selected_variants
+from evaluation.logs.variants import KINDS, VariantError, VariedLog, parse_variant
 from evaluation.mapping.mapper import Mapper
 from evaluation.mapping.options import add_mapper_arguments, mapper_from
 
@@ -94,9 +94,8 @@ def parse_arguments(argv: list[str] | None) -> argparse.Namespace:
 def main(argv: list[str] | None = None) -> int:
     arguments = parse_arguments(argv)
     try:
-        logs, num_missing = selected_logs(__name__, arguments)
-        wanted = [varied(log, variant) for log in logs for variant in arguments.variants]
-    except (DatasetError, VariantError, OSError) as error:
+        wanted, num_missing = selected_variants(__name__, arguments)
+    except (DatasetError, OSError) as error:
         complain(__name__, str(error))
         return 3
     mapper = mapper_from(arguments)

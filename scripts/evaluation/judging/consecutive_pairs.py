@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from evaluation.common.poses import Array, compose, inverse, pose_error
+from evaluation.common.programs import Failure
 from evaluation.common.shares import Share
 from evaluation.logs.reference_log import reference_poses
 from evaluation.mapping.mapper import Mapper
@@ -71,9 +72,13 @@ class LogScore:
 
 
 def score_log(path: Path, cli: Path, arguments: Sequence[str], every: int = 1) -> LogScore:
-    """Maps every so manieth scan of one log. Raises Failure when it gives no map."""
+    """Maps every so manieth scan of one log. Raises Failure that names it when it gives no map."""
+    mapper = Mapper(cli, ("--every", str(every), *arguments))
     with tempfile.TemporaryDirectory(prefix="log_") as folder:
-        report, _ = Mapper(cli, ("--every", str(every), *arguments)).run([path], Path(folder))
+        try:
+            report, _ = mapper.run([path], Path(folder))
+        except Failure as failure:
+            raise Failure(f"{path.name}: {failure}") from None
     placed, reference = placed_poses(report), reference_poses(path)[::every]
     right = [errors[0] for errors in pair_errors(reference, placed) if is_right(*errors)]
     return LogScore(

@@ -128,9 +128,7 @@ def quarters(run: Growth) -> str:
     if len(marks) < 5:
         return ""
     at = [marks[round(k * (len(marks) - 1) / 4)] for k in range(5)]
-    costs = [
-        1000.0 * (b["cpu_s"] - a["cpu_s"]) / (b["num_scans"] - a["num_scans"]) for a, b in zip(at, at[1:])
-    ]
+    costs = [1000.0 * (b["cpu_s"] - a["cpu_s"]) / (b["num_scans"] - a["num_scans"]) for a, b in zip(at, at[1:])]
     return "CPU time per scan in the four quarters of the log: " + ", ".join(f"{cost:.1f}" for cost in costs) + " ms"
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import gzip
 from collections import Counter
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TextIO
@@ -51,7 +52,7 @@ def opened(path: Path) -> TextIO:
 def reference_poses(path: Path) -> list[Array]:
     """x [m], y [m], heading [rad] of each FLASER line. Raises ValueError for one that is cut off."""
     with opened(path) as lines:
-        return [_flaser(words)[1] for words in map(str.split, lines) if words[:1] == ["FLASER"]]
+        return [pose for _, pose in _flasers(path.name, lines)]
 
 
 def read_reference_log(path: Path, needs_poses: bool = True) -> ReferenceLog:
@@ -85,23 +86,25 @@ def strip_nist(text: str) -> str:
 
 
 def _carmen(name: str, text: str) -> ReferenceLog:
-    poses, scans = [], []
-    for line_number, words in enumerate(map(str.split, text.splitlines()), 1):
-        if words[:1] != ["FLASER"]:
-            continue
-        try:
-            scan, pose = _flaser(words)
-        except (ValueError, IndexError) as error:
-            raise ValueError(f"{name}:{line_number}: {error}") from None
-        scans.append(scan)
-        poses.append(pose)
-    if not poses:
+    found = list(_flasers(name, text.splitlines()))
+    if not found:
         raise ValueError(f"{name}: no FLASER line")
+    scans, poses = [scan for scan, _ in found], [pose for _, pose in found]
     maximum_m = no_return_m(scans)
     points = [
         points_of(np.where((scan > 0) & (scan < maximum_m), scan, np.nan), beam_angles_rad(len(scan))) for scan in scans
     ]
     return ReferenceLog(name, ".log", strip_carmen(text), np.array(poses), points)
+
+
+def _flasers(name: str, lines: Iterable[str]) -> Iterator[tuple[Array, Array]]:
+    """Readings and pose of each FLASER line. Raises ValueError that names file and line."""
+    for number, words in enumerate(map(str.split, lines), 1):
+        if words[:1] == ["FLASER"]:
+            try:
+                yield _flaser(words)
+            except (ValueError, IndexError) as error:
+                raise ValueError(f"{name}:{number}: {error}") from None
 
 
 def _flaser(words: list[str]) -> tuple[Array, Array]:

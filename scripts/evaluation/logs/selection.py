@@ -13,6 +13,7 @@ from evaluation.common.project import PROJECT, datasets_folder, found_log
 
 from .datasets import DatasetError, LogSpec, read_datasets, relations_beside, select
 from .evaluation_log import EvaluationLog, load
+from .variants import VariedLog, varied
 
 
 def add_datasets_argument(parser: argparse.ArgumentParser) -> None:
@@ -61,3 +62,9 @@ def selected_logs(module: str, arguments: argparse.Namespace) -> tuple[list[Eval
             else:
                 logs.append(load(spec, Path(folder), arguments.cli))
     return logs, len(specs) - len(logs)
+
+
+def selected_variants(module: str, arguments: argparse.Namespace) -> tuple[list[VariedLog], int]:
+    """Each variant of each selected log, and how many logs are missing. Raises DatasetError or OSError."""
+    logs, num_missing = selected_logs(module, arguments)
+    return [varied(log, variant) for log in logs for variant in arguments.variants], num_missing

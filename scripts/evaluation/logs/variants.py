@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from evaluation.common.poses import Array
 from evaluation.simulation.streams import stream
 
+from .datasets import DatasetError
 from .evaluation_log import EvaluationLog
 
 KINDS = """every-K-O  each K-th scan, from scan O on
@@ -22,7 +23,7 @@ KINDS = """every-K-O  each K-th scan, from scan O on
 PATTERN = re.compile(r"whole|reversed|mirrored|every-[1-9]\d*-\d+|drop-\d{1,2}-\d+")
 
 
-class VariantError(ValueError):
+class VariantError(DatasetError):
     """A variant that is none, or a log that cannot have it."""
 
 

@@ -26,8 +26,7 @@ def with_present_names(value: Any) -> Any:
     """A part of a report, with the members that have new names under these. The options keep their names."""
     if isinstance(value, dict):
         return {
-            RENAMED.get(key, key): item if key == "options" else with_present_names(item)
-            for key, item in value.items()
+            RENAMED.get(key, key): item if key == "options" else with_present_names(item) for key, item in value.items()
         }
     return [with_present_names(item) for item in value] if isinstance(value, list) else value
 

@@ -78,4 +78,3 @@ def options_from(arguments: argparse.Namespace, seed: int) -> SimulationOptions:
             height_m=arguments.laser_height_m,
         ),
     )
-

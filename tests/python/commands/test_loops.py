@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from evaluation.commands import loops as loops_command
-from evaluation.judging.loops import Limits, check_loops as judged, describe, table
+from evaluation.judging.loops import Limits, describe, table
+from evaluation.judging.loops import check_loops as judged
 from evaluation_support import line_log, reporter, written_log
 
 
