@@ -45,7 +45,7 @@ LEVEL = re.compile(r"no returns +([0-9.]+)(?: to ([0-9.]+))? m")
 
 @dataclass(frozen=True)
 class Outcome:
-    """Of one log. `short`: levels with too few runs. `fault`: why the log could not be read."""
+    """What became of one log. `short` counts levels with too few runs, `fault` says why the log could not be read."""
 
     kind: str
     seed: int
@@ -93,7 +93,7 @@ def log_text(log: NoReturnLog) -> str:
 
 
 def num_runs(on_code: Mask) -> int:
-    """Of neighbouring beams."""
+    """How many runs of neighbouring beams there are."""
     before = np.pad(on_code, ((0, 0), (1, 0)))[:, :-1]
     return int((on_code & ~before).sum())
 
@@ -118,7 +118,7 @@ def judged(kind: str, seed: int, sensor: SensorLog, told: list[tuple[float, floa
 
 
 def run_simulated(kind: str, seed: int, cli: Path) -> list[Outcome]:
-    """One for each sensor."""
+    """What became of a simulated log, for each of its sensors."""
     log = simulate_no_return_log(kind, seed)
     with tempfile.TemporaryDirectory(prefix="no_return_") as name:
         path = Path(name) / "log.nist"

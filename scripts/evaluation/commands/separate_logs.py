@@ -40,7 +40,7 @@ wrongly), or a log is missing or gave no map, 2 wrong usage, 3 malformed data se
 
 @dataclass(frozen=True)
 class Outcome:
-    """Of one run. `lines` tell people about it, `fields` programs."""
+    """What became of one run: `lines` tell people about it, `fields` tell programs."""
 
     is_right: bool
     lines: list[str]
@@ -121,7 +121,7 @@ def check_halves(log: EvaluationLog, mapper: Mapper, most_ate_m: float) -> Outco
 
 
 def outcome_of(logs: Sequence[EvaluationLog], arguments: argparse.Namespace) -> Outcome:
-    """Of logs together or, of a single one, of its halves. A run that fails is an outcome, too."""
+    """What becomes of logs together or, of a single one, of its halves. A run that fails is an outcome, too."""
     mapper = mapper_from(arguments)
     try:
         if arguments.with_itself:

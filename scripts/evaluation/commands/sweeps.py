@@ -67,7 +67,7 @@ def row(one: Outcome) -> list[object]:
 
 
 def fields(one: Outcome) -> dict[str, object]:
-    """For JSON, all on one level."""
+    """An outcome for JSON, all on one level."""
     walk = {"rate_hz": one.rate_hz, "yaw_deg": one.yaw_deg, "seed": one.seed, "sweep_time_s": one.sweep_time_s}
     return {**walk, **asdict(one.score)}
 

@@ -60,9 +60,10 @@ def slides_to(a_from_b: Array, covariance: Array, place: Array) -> bool:
 
 @dataclass(frozen=True)
 class Candidates:
-    """Of a revised link, one after the other: `poses` `[k, 3]`, `scores`, `for_it` and `against_it` `[k]`; `in_map` is
-    the one that the map had; `right` `[k]` those that are at the true place; `deviations_m` `[k]` how little the two
-    scans hold it, in the direction in which they hold it best; `vouched` `[k]` what a parallel link says for it."""
+    """What is known of the candidates of a revised link: `poses` `[k, 3]`, `scores`, `for_it` and `against_it` `[k]`;
+    `in_map` is the one that the map had; `right` `[k]` those that are at the true place; `deviations_m` `[k]` how
+    little the two scans hold it, in the direction in which they hold it best; `vouched` `[k]` what a parallel link says
+    for it."""
 
     poses: Array
     scores: Array
@@ -104,14 +105,14 @@ class Candidates:
         return places, shares[:-1] / shares.sum()
 
     def likelihood(self, weights: Sequence[float]) -> float:
-        """Of the truth: the right place, or, when no candidate is right, none of them."""
+        """How likely the truth is: the right place, or, when no candidate is right, none of them."""
         places, shares = self.probabilities(weights)
         right = self.right[places]
         return float(shares[right].sum() if right.any() else 1.0 - shares.sum())
 
 
 def log_odds(probability: Array) -> Array:
-    """Of probabilities, which are kept away from 0 and 1."""
+    """The log odds of probabilities, which are kept away from 0 and 1."""
     kept = np.clip(probability, 1e-9, 1 - 1e-9)
     return np.asarray(np.log(kept / (1 - kept)))
 

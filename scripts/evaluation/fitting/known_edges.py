@@ -29,7 +29,8 @@ ALL_STAY = ("--revise-below", "0", "--split-below", "0")
 
 @dataclass(frozen=True)
 class Links:
-    """Of one log. Lone ones as `(stated, view shortfall, right)`, revised ones with what was stated of the best."""
+    """The links of one log: lone ones as `(stated, view shortfall, right)`, and revised ones with what was stated of
+    the best."""
 
     lone: list[tuple[float, float, bool]] = field(default_factory=list)
     revised: list[Candidates] = field(default_factory=list)
@@ -38,7 +39,8 @@ class Links:
 
 
 def view_shortfalls(trace: Path) -> dict[tuple[int, int], float]:
-    """By the positions of a link; one whose keyframes in between were let go is missing, and certain."""
+    """The view shortfall by the positions of a link; one whose keyframes in between were let go is missing, and
+    certain."""
     with trace.open(encoding="utf-8") as lines:
         records = [json.loads(line) for line in lines if line.startswith('{"record":"link"')]
     return {(record["reference"], record["query"]): float(record["view_shortfall"]) for record in records}

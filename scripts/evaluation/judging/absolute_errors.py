@@ -14,7 +14,8 @@ from .whole_maps import fragment_errors
 
 
 def absolute_errors_m(report: Report, references: Sequence[Array]) -> Array:
-    """Of each scan in the map, after the planar motion that fits all of them best; `references[log]` `[p, 3]`."""
+    """The error of each scan in the map, after the planar motion that fits all of them best. The true poses of a log
+    are `references[log]` `[p, 3]`."""
     poses = placed_poses(report)
     if not poses:
         return np.empty(0)
@@ -26,5 +27,5 @@ def absolute_errors_m(report: Report, references: Sequence[Array]) -> Array:
 
 
 def root_mean_square(values: Array) -> float:
-    """NaN of nothing."""
+    """The root mean square of some values, which is NaN where there are none."""
     return float(np.sqrt(np.mean(values**2))) if len(values) else float("nan")

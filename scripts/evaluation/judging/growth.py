@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from evaluation.common.sampling import Sample
 from evaluation.common.tables import table as markdown
@@ -128,7 +129,7 @@ def quarters(run: Growth) -> str:
     if len(marks) < 5:
         return ""
     at = [marks[round(k * (len(marks) - 1) / 4)] for k in range(5)]
-    costs = [1000.0 * (b["cpu_s"] - a["cpu_s"]) / (b["num_scans"] - a["num_scans"]) for a, b in zip(at, at[1:])]
+    costs = [1000.0 * (b["cpu_s"] - a["cpu_s"]) / (b["num_scans"] - a["num_scans"]) for a, b in pairwise(at)]
     return "CPU time per scan in the four quarters of the log: " + ", ".join(f"{cost:.1f}" for cost in costs) + " ms"
 
 

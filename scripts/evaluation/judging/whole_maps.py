@@ -27,7 +27,7 @@ STATED = (0.0, 0.5, 0.92, 0.99, 1.0)  # bounds of the rows of `links_table`
 
 @dataclass(frozen=True)
 class FragmentErrors:
-    """Of each position of a fragment, by `indices`: distance [m] and angle [deg] to the truth."""
+    """How far each position of a fragment, by `indices`, is from the truth: distance [m] and angle [deg]."""
 
     indices: list[int]
     errors_m: Array
@@ -133,7 +133,7 @@ def mean_of_sub_scans(drive: Drive) -> dict[int, Array]:
 
 
 def lost_map(seed: int, num_positions: int, fault: str) -> WholeMap:
-    """Of a seed whose mapper gave no report."""
+    """What stands for a seed whose mapper gave no report."""
     nan = float("nan")
     return WholeMap(seed, num_positions, [], nan, nan, False, False, fault)
 

@@ -111,7 +111,7 @@ def read_reference_file(path: Path, times: list[float]) -> Array:
 
 
 def checksum(text: str, reference: Array | None, relations: list[RelationFile]) -> str:
-    """Of all that results depend on: two runs are on the same data when these are the same."""
+    """The checksum of all that results depend on: two runs are on the same data when these are the same."""
     digest = hashlib.sha256(text.encode())
     digest.update(b"" if reference is None else reference.tobytes())
     for file in relations:

@@ -38,7 +38,7 @@ def parse_with_logs(parser: argparse.ArgumentParser, argv: list[str] | None) -> 
 
 
 def named_spec(name: str) -> LogSpec:
-    """Of a log by its path, or its path below SHAPEMAP_DATASETS; its own poses are the reference."""
+    """What is known of a log by its path, or its path below SHAPEMAP_DATASETS; its own poses are the reference."""
     path = found_log(Path(name))
     stem = path.name.split(".")[0].removesuffix("-corrected")
     return LogSpec(stem, stem, "as the log says", "slam", path=path, relations=relations_beside(path))

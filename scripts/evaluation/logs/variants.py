@@ -45,7 +45,7 @@ def parse_variant(text: str) -> str:
 
 
 def varied(log: EvaluationLog, variant: str) -> VariedLog:
-    """Of a CARMEN log with reference poses, whose scans get the times 1, 2, 3 ... s. Raises VariantError."""
+    """A variant of a CARMEN log with reference poses; its scans get the times 1, 2, 3 ... s. Raises VariantError."""
     if log.reference is None or log.content.ending != ".log":
         raise VariantError(f"{log.name}: variants need a CARMEN log with reference poses")
     lines = log.content.without_poses.splitlines()

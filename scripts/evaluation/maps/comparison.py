@@ -122,7 +122,7 @@ def _right(a: Run, b: Run) -> tuple[Values, int] | None:
 
 
 def _pair_error(a: Run, b: Run) -> tuple[Values, int] | None:
-    """Of the pairs that both get right: how precise is either?"""
+    """The errors of the pairs that both get right: how precise is either?"""
     if not a["pairs"] or not b["pairs"]:
         return None
     right = [k for k, both in enumerate(zip(a["pairs"]["right"], b["pairs"]["right"], strict=True)) if all(both)]
@@ -172,7 +172,7 @@ def _over_draws(
 
 
 def _samples(logs: Sequence[Values]) -> list[Sample]:
-    """Of several logs each is one draw, of one log each of its values."""
+    """The draws: each log where there are several, and each value of a single one."""
     draws: Sequence[Values] = [[pair] for pair in logs[0]] if len(logs) == 1 else logs
     return [Sample(sum(a for a, _ in draw), sum(b for _, b in draw), len(draw)) for draw in draws if draw]
 
@@ -217,7 +217,7 @@ def _row(
 
 
 def as_cells(row: Row) -> list[str]:
-    """For a table."""
+    """The cells of a row for a table."""
     share, metres = row.unit == "", row.unit == "m"
     scale, unit, digits = (100.0, " %", 1) if share else (100.0, " cm", 1) if metres else (1.0, f" {row.unit}", 2)
     values = row.difference

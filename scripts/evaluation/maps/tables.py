@@ -36,7 +36,7 @@ def frame(results: dict[str, Any]) -> pd.DataFrame:
 
 
 def median_error(run: dict[str, Any]) -> float | None:
-    """Of the pairs with both positions in one fragment."""
+    """The median over the pairs with both positions in one fragment."""
     errors = [error for error in run["pairs"]["error_m"] if error is not None] if run["pairs"] else []
     return statistics.median(errors) if errors else None
 
@@ -98,7 +98,7 @@ def summary_table(data: pd.DataFrame, by: str = "group") -> pd.DataFrame:
 
 
 def cost_table(data: pd.DataFrame, results: dict[str, Any]) -> pd.DataFrame:
-    """Of the logs without any reference: what was placed and what it took."""
+    """The table of the logs without any reference: what was placed and what it took."""
     without = [log["name"] for log in results["logs"] if log["reference"] == "none"]
     rows = []
     for run in data[data["log"].isin(without)].to_dict("records"):

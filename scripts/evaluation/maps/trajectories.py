@@ -47,7 +47,7 @@ def _read(path: Path, num_positions: int) -> Fragment:
 
 
 def as_lists(fragments: Sequence[Mapping[int, Array]]) -> list[list[list[float]]]:
-    """For JSON: `position, x_m, y_m, theta_rad` of each."""
+    """The fragments for JSON: `position, x_m, y_m, theta_rad` of each."""
     return [
         [[position, *(round(float(value), 6) for value in fragment[position])] for position in sorted(fragment)]
         for fragment in fragments

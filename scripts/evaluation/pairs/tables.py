@@ -76,7 +76,7 @@ def rows_by(
 
 
 def success_tables(pairs: Sequence[PairOutcome], faults: dict[str, str]) -> dict[str, list[SuccessRow]]:
-    """By title of the column that tells the rows apart. A log whose run crashed says so."""
+    """The tables by title of the column that tells their rows apart. A log whose run crashed says so."""
     logs = list(dict.fromkeys(pair.log for pair in pairs))
     gaps = sorted({pair.gap for pair in pairs})
 

@@ -126,7 +126,7 @@ def _put_up(
 
 
 def _is_inside(point: Array, world: World) -> bool:
-    """Of a building: a line to the left crosses its outline an odd number of times."""
+    """Whether a point lies in a building: a line to the left crosses its outline an odd number of times."""
     crossed = 0
     for face in world.faces:
         (ax, ay), (bx, by) = face.start, face.end

@@ -77,7 +77,7 @@ class PlanarCaster:
 
 
 class _Beams:
-    """Of several scans."""
+    """The beams of several scans."""
 
     def __init__(self, poses: Array, first_rad: float, step_rad: float, num_beams: int) -> None:
         angles = poses[:, 2, None] + first_rad + step_rad * np.arange(num_beams)
