@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+import ast
 import re
 import sys
 from collections.abc import Iterator
@@ -12,10 +13,15 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatch
 from pathlib import Path
 
-# A room includes only itself and those before it.
+# A room of the library includes only itself and those before it.
 ROOMS = (
     *("core", "scan", "shape", "deskew", "motion", "grid", "paper", "matching", "graph", "loops", "inference"),
     *("localization", "mapper", "io"),
+)
+# A room of scripts/evaluation/ imports only itself and those before it, and a command is imported by no other module.
+SCRIPT_ROOMS = (
+    *("common", "simulation", "logs", "mapping", "judging", "pairs", "maps", "fitting", "figures"),
+    "commands",
 )
 FOLDERS = (".ci", "apps", "cmake", "libshapemap", "python", "scripts", "tests")
 SUFFIXES = (".cmake", ".cpp", ".hpp", ".in", ".py", ".sh")
@@ -73,9 +79,26 @@ class SourceFile:
 
     @property
     def room(self) -> str | None:
-        """The room folder of libshapemap that the file lies in."""
+        """The room of libshapemap that the file lies in."""
         found = re.match(r"libshapemap/(?:include/shapemap|src)/(\w+)/", self.path)
         return found.group(1) if found else None
+
+    @property
+    def script_room(self) -> str | None:
+        """The folder of scripts/evaluation/ that the file lies in."""
+        found = re.match(r"scripts/evaluation/(\w+)/", self.path)
+        return found.group(1) if found else None
+
+    def imports(self) -> Iterator[tuple[int, str]]:
+        """Line number and whole name of what a Python file imports, such as evaluation.logs.datasets.select."""
+        package = self.path.removeprefix("scripts/").split("/")[:-1]
+        for node in ast.walk(ast.parse("\n".join(self.lines), self.path)):
+            if isinstance(node, ast.Import):
+                yield from ((node.lineno, alias.name) for alias in node.names)
+            elif isinstance(node, ast.ImportFrom):
+                above = package[: len(package) + 1 - node.level] if node.level else []
+                module = [*above, *([node.module] if node.module else [])]
+                yield from ((node.lineno, ".".join([*module, alias.name])) for alias in node.names)
 
     def includes(self) -> Iterator[tuple[int, str, bool]]:
         """Line number, included path and whether it is quoted."""
@@ -112,7 +135,7 @@ def check_text(source: SourceFile) -> Iterator[str]:
 
 
 def included_room(path: str, including: str) -> str:
-    """The room of a quoted include: "shapemap/map/x.hpp", "map/x.hpp" or, in the same folder, "x.hpp"."""
+    """The room of a quoted include: "shapemap/grid/x.hpp", "grid/x.hpp" or, in the same folder, "x.hpp"."""
     parts = path.removeprefix("shapemap/").split("/")
     return parts[0] if len(parts) > 1 else including
 
@@ -135,6 +158,30 @@ def check_layers(source: SourceFile) -> Iterator[str]:
             yield f"{where}: '{path}' is in no room of the library"
         elif ROOMS.index(other) > ROOMS.index(room):
             yield f"{where}: '{room}' must not include '{path}', which comes after it"
+
+
+def is_after(room: str, other: str) -> bool:
+    """Whether the one room of scripts/evaluation/ comes after the other."""
+    return room in SCRIPT_ROOMS and SCRIPT_ROOMS.index(room) > SCRIPT_ROOMS.index(other)
+
+
+def check_imports(source: SourceFile, executables: set[str]) -> Iterator[str]:
+    """Of the Python below scripts/: library modules know neither executables nor commands."""
+    if not source.path.startswith("scripts/") or source.path.count("/") < 2 or not source.path.endswith(".py"):
+        return
+    if source.script_room is not None and source.script_room not in SCRIPT_ROOMS:
+        yield f"{source.path}:1: folder '{source.script_room}' is none of: {', '.join(SCRIPT_ROOMS)}"
+        return
+    for number, name in source.imports():
+        where, (top, *below) = f"{source.path}:{number}", name.split(".")
+        if top in executables:
+            yield f"{where}: '{top}' is an executable, which no module imports"
+        elif top != "evaluation" or not below:
+            continue
+        elif below[0] == "commands":
+            yield f"{where}: '{name}' is a command, which no module imports"
+        elif source.script_room and is_after(below[0], source.script_room):
+            yield f"{where}: '{source.script_room}' must not import '{name}', which comes after it"
 
 
 def check_silence(source: SourceFile) -> Iterator[str]:
@@ -163,9 +210,11 @@ def check_confinement(sources: list[SourceFile], rule: Confinement) -> Iterator[
 
 def violations(root: Path) -> list[str]:
     sources = source_files(root)
+    executables = {Path(s.path).stem for s in sources if s.path.startswith("scripts/") and s.path.count("/") == 1}
     found: list[str] = []
     for source in sources:
         found += [*check_text(source), *check_layers(source), *check_silence(source)]
+        found += check_imports(source, executables)
     for rule in CONFINEMENTS:
         found += check_confinement(sources, rule)
     return sorted(found)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from evaluation.common.files import write_whole
 from log_conversion.bags import BagOptions
 from log_conversion.model import LaserLog, Mount, UnknownLogError
 from log_conversion.number_lines import PoseLineOptions
@@ -20,7 +21,6 @@ from log_conversion.reading import ReadOptions, read_log
 from log_conversion.ros_messages import Echo
 from log_conversion.summary import summary
 from log_conversion.text_format import text_of
-from shapemap_sim.write import write_whole
 
 EXAMPLE = """examples:
   scripts/convert_logs.py walk.bag walk.nist

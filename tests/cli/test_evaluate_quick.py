@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/evaluate.py --quick with the real programs. How long a run takes is no matter here: sanitizers are slow."""
+"""`evaluate.py maps --quick` with the real programs. How long a run takes is no matter here: sanitizers are slow."""
 
 import json
 import pathlib
@@ -15,7 +15,7 @@ LIMIT_S = 600
 
 def quick(repository, cli_path, folder, *words):
     baselines = pathlib.Path(cli_path).with_name("shapemap-baselines")
-    command = [sys.executable, repository / "scripts/evaluate.py", "--quick", "--out", folder, "--jobs", "1"]
+    command = [sys.executable, repository / "scripts/evaluate.py", "maps", "--quick", "--out", folder, "--jobs", "1"]
     command += ["--timeout-s", "200"]
     command += ["--cli", cli_path, "--baselines", baselines, *words]
     return subprocess.run([str(w) for w in command], capture_output=True, text=True, timeout=LIMIT_S)

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from evaluation.datasets import LogSpec
-from evaluation.logs import EvaluationLog, load
-from evaluation.methods import Programs, parse_method
-from evaluation.runs import Job
+from evaluation.logs.datasets import LogSpec
+from evaluation.logs.evaluation_log import EvaluationLog, load
+from evaluation.maps.methods import Programs, parse_method
+from evaluation.maps.runs import Job
 
 NUM_SCANS = 6
 ODOMETRY = "7.125"  # stands in every odometry field

@@ -9,16 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from conversion_support import (
-    converted,
-    imu,
-    multi_echo_scan,
-    refusal,
-    scan,
-    transform,
-    write_bag,
-    write_ros2_bag,
-)
+from conversion_support import converted, imu, multi_echo_scan, refusal, scan, transform, write_bag, write_ros2_bag
 
 NAN, INF = math.nan, math.inf
 

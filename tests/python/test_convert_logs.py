@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import convert_logs
-from shapemap_sim.read import ScanLog, read_scan_log
+from evaluation.simulation.read import ScanLog, read_scan_log
 
 
 def converted(source: Path, tmp_path: Path, *options: str) -> ScanLog:

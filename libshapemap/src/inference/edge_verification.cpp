@@ -28,7 +28,7 @@ constexpr double kSame_m = 0.40;
 constexpr double kSame_rad = 8 * kDegree;
 
 /// What a candidate is worth, as logarithm of odds: a multinomial logit, fitted to doubtful links of thinned real logs
-/// and of simulated arenas by scripts/fit_links.py.
+/// and of simulated arenas by scripts/evaluate.py fit-edges.
 constexpr double kPerScore = 0.63;
 constexpr double kLeastScore = -12.0;  ///< however badly two scans go together by themselves, others may know better
 constexpr double kByOthers = 2.9;

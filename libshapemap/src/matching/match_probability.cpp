@@ -32,7 +32,8 @@ double match_probability(const MatchCandidate& best, double margin) {
   constexpr double kLeastAgree = 0.02;
   const double agree = best.visibility.agree / std::max(best.visibility.total(), 1e-9);
   const double lead = std::clamp(margin, kLeastMargin, kFullMargin);
-  // Logistic regression on pairs of scans with known poses, and on pairs of different places: scripts/fit_scores.py.
+  // Logistic regression on pairs of scans with known poses, and on pairs of different places, by
+  // scripts/evaluate.py fit-scores.
   const double log_odds =
       -0.34 + 0.61 * lead + 0.28 * std::log(lead) + 0.58 * best.score + 1.07 * std::log(kLeastAgree + agree);
   // However well the best place fits: of two that fit alike, each is right half of the time.
@@ -43,7 +44,7 @@ double odometry_probability(double match_probability, double insufficient_view) 
   constexpr double kLeast = 1e-9;  // the logarithm stays finite
   const double match = log_odds_of(std::clamp(match_probability, kLeast, 1.0 - kLeast));
   // Logistic regression on links that no loop holds, of thinned logs and simulated arenas; the last weight on those of
-  // hard scenes: scripts/fit_links.py.
+  // hard scenes: scripts/evaluate.py fit-edges.
   return probability_of(3.0 + 0.48 * match - 12.0 * insufficient_view);
 }
 
