@@ -45,7 +45,7 @@ int measure(const char* path, double speed, std::size_t most_scans) {
     if (speed > 0.0) {
       const double due_s = (scan.timestamp_s - log.scans.front().timestamp_s) / speed;
       const auto due = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(due_s));
-      num_late += Clock::now() > due + std::chrono::milliseconds(50) ? 1 : 0;
+      if (Clock::now() > due + std::chrono::milliseconds(50)) ++num_late;
       std::this_thread::sleep_until(due);
     }
     const auto before = Clock::now();
