@@ -36,13 +36,11 @@ std::string description_of(const OptionEntry& entry) {
   return entry.help + " (" + (entry.allowed.empty() ? "" : entry.allowed + "; ") + "default: " + typed + ")";
 }
 
-CLI::Option* add_flag(CLI::App& app, const OptionEntry& entry) {
+CLI::Option* add_flag(CLI::App& app, const OptionEntry& entry, const std::string& name) {
   const std::string description = description_of(entry);
-  if (entry.kind == OptionEntry::Kind::kSwitch) {
-    return app.add_flag("--" + entry.name + ",!--no-" + entry.name, description);
-  }
+  if (entry.kind == OptionEntry::Kind::kSwitch) return app.add_flag("--" + name + ",!--no-" + name, description);
   CLI::Option* option = app.add_option(
-      "--" + entry.name, [](const CLI::results_t&) { return true; }, description);
+      "--" + name, [](const CLI::results_t&) { return true; }, description);
   return option->option_text(value_name(entry.kind));
 }
 
@@ -55,7 +53,13 @@ std::string one_line(std::string text) {
 }  // namespace
 
 TableFlags::TableFlags(CLI::App& app, const OptionTable& table) {
-  for (const OptionEntry& entry : table) flags_.push_back({&entry, add_flag(app, entry)->group(entry.group)});
+  constexpr const char* kHidden = "";
+  for (const OptionEntry& entry : table) {
+    flags_.push_back({&entry, add_flag(app, entry, entry.name)->group(entry.group)});
+    if (entry.old_name.empty()) continue;
+    CLI::Option* const now = flags_.back().option;
+    flags_.push_back({&entry, add_flag(app, entry, entry.old_name)->group(kHidden)->excludes(now)});
+  }
 }
 
 void TableFlags::apply() const {

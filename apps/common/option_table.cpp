@@ -15,8 +15,9 @@ std::string limits_text(const Field& field) {
 }
 
 const OptionEntry* find_option(const OptionTable& table, const std::string& name) {
-  const auto found =
-      std::find_if(table.begin(), table.end(), [&](const OptionEntry& entry) { return entry.name == name; });
+  const auto found = std::find_if(table.begin(), table.end(), [&](const OptionEntry& entry) {
+    return entry.name == name || (!name.empty() && entry.old_name == name);
+  });
   return found == table.end() ? nullptr : &*found;
 }
 

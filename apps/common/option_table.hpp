@@ -17,6 +17,7 @@ struct OptionEntry {
 
   std::string group;
   std::string name;
+  std::string old_name;  ///< accepted as well; may be empty
   std::string help;
   Kind kind = Kind::kText;
   std::string allowed;                          ///< limits or spellings, for the help
@@ -49,7 +50,7 @@ Enum parse_choice(const Field& field, const std::string& text) {
 template <class Value>
 OptionEntry make_entry(const std::string& group, const Field& field, Value& value) {
   using Kind = OptionEntry::Kind;
-  OptionEntry entry{group, field.name, field.help, Kind::kText, "", {}, {}};
+  OptionEntry entry{group, field.name, field.old_name, field.help, Kind::kText, "", {}, {}};
   if constexpr (std::is_same_v<Value, bool>) {
     entry.kind = Kind::kSwitch;
     entry.text = [&value] { return value ? "true" : "false"; };
@@ -90,7 +91,7 @@ OptionTable option_table(Settings& settings) {
   return table;
 }
 
-/// The entry called `name`, or null.
+/// The entry called `name`, now or before, or null.
 const OptionEntry* find_option(const OptionTable& table, const std::string& name);
 
 }  // namespace shapemap::cli

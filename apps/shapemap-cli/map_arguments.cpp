@@ -42,8 +42,8 @@ void add_outputs(CLI::App& app, MapArguments& arguments) {
       "options, results, timings as JSON, '-' for standard output; example: --report report.json");
   add("--trace", arguments.trace_path,
       "every step that led to the map, a JSON object a line, .gz compresses; example: --trace trace.jsonl");
-  app.add_option("--fragments", arguments.fragments_folder,
-                 "a map and a trajectory of each fragment that nothing ties to the map; example: --fragments apart")
+  app.add_option("--components,--fragments", arguments.fragments_folder,
+                 "a map and a trajectory of each component that nothing joins to the map; example: --components apart")
       ->option_text("FOLDER")
       ->group("Output");
   add("--save-state", arguments.state_path,

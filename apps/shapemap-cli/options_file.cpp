@@ -20,7 +20,7 @@ void apply_line(const OptionTable& table, const std::string& line, std::set<std:
   if (parsed.key.empty()) return;
   const OptionEntry* entry = find_option(table, parsed.key);
   if (!entry) throw ConfigError("there is no option '" + parsed.key + "'");
-  if (!seen.insert(parsed.key).second) throw ConfigError("'" + parsed.key + "' is set twice");
+  if (!seen.insert(entry->name).second) throw ConfigError("'" + parsed.key + "' is set twice");
   if (parsed.is_string != takes_string(*entry)) {
     throw ConfigError("'" + parsed.key + "' takes " +
                       (takes_string(*entry) ? "a string in quotes" : "a bare value, not a string in quotes"));

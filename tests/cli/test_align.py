@@ -147,17 +147,17 @@ def test_timings_summary_and_silence(run, align, room_log):
 
 
 def test_options_files_of_both_commands_fit(run, align, tmp_path, room_log):
-    text = run("align", "--kept-hypotheses", 1, "--dump-config").stdout
+    text = run("align", "--kept-candidates", 1, "--dump-config").stdout
     values = tomllib.loads(text)
-    assert values["kept-hypotheses"] == 1
+    assert values["kept-candidates"] == 1
     assert "threads" in values
     assert "method" not in values
     assert "resolution-m" not in values
     (tmp_path / "pairs.toml").write_text(text)
-    (tmp_path / "map.toml").write_text(run("--kept-hypotheses", 1, "--dump-config").stdout)
+    (tmp_path / "map.toml").write_text(run("--kept-candidates", 1, "--dump-config").stdout)
     for name in ("pairs.toml", "map.toml"):
         assert all(len(pair["hypotheses"]) == 1 for pair in align("room.log", "--gap", 1, "--config", name))
-    assert tomllib.loads(run("--config", "pairs.toml", "--dump-config").stdout)["kept-hypotheses"] == 1
+    assert tomllib.loads(run("--config", "pairs.toml", "--dump-config").stdout)["kept-candidates"] == 1
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ import synthetic_log
 
 OUTPUTS = {"--out": "map.png", "--trajectory": "map.tum", "--motions": "map.motions", "--trace": "map.jsonl"}
 # Each position a keyframe, and a coarse search: many alignments that take little time.
-OPTIONS = ["--keyframe-step-m", "0", "--first", "40", "--rotation-peaks", "3", "--refined-hypotheses", "5"]
+OPTIONS = ["--keyframe-step-m", "0", "--first", "40", "--rotation-peaks", "3", "--refined-candidates", "5"]
 STATE = ["--save-state", "run.state"]
 RECORD = 8 + 24  # bytes of an alignment without hypotheses
 

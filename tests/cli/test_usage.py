@@ -102,7 +102,7 @@ def test_options_file_round_trips(run, tmp_path):
 
 def test_options_file_round_trips_after_every_change(run, tmp_path):
     label = 'odd "#name", \\ [x] = é\t'
-    arguments = ["--sensor-label", label, "--resolution-m", "0.0123456789012345", "--fov-deg", "100.1", "--seed", "7"]
+    arguments = ["--sensor-label", label, "--resolution-m", "0.0123456789012345", "--fov-deg", "100.1"]
     arguments += ["--draw-path", "--max-mount-tilt-deg", "12.3456789"]
     arguments += ["--sub-scan-turn-deg", "-90.7", "--range-unit", "cm"]
     text = run(*arguments, "--dump-config").stdout
@@ -116,6 +116,22 @@ def test_options_file_round_trips_after_every_change(run, tmp_path):
     assert values["sub-scan-turn-deg"] == -90.7
     assert values["draw-path"] is True
     assert values["range-unit"] == "cm"
+
+
+def test_names_that_options_had_before_are_accepted_and_not_shown(run, tmp_path):
+    assert options_of(run("--settle-at", 5, "--dump-config").stdout)["cull-at"] == 5
+    (tmp_path / "old.toml").write_text("settle-at = 7\n")
+    assert options_of(run("--config", "old.toml", "--dump-config").stdout)["cull-at"] == 7
+    both = run("--settle-at", 5, "--cull-at", 6, "--dump-config")
+    assert both.returncode == 2
+    assert "--cull-at" in both.stderr
+    (tmp_path / "twice.toml").write_text("settle-at = 7\ncull-at = 8\n")
+    twice = run("--config", "twice.toml", "--dump-config")
+    assert twice.returncode == 2
+    assert "twice.toml:2" in twice.stderr
+    help_text = run("--help").stdout
+    assert "--cull-at" in help_text
+    assert "settle-at" not in help_text
 
 
 def test_any_angle_in_degrees_comes_back_as_it_was_typed(run):

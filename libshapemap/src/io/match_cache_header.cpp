@@ -74,7 +74,8 @@ template <class Group>
 void append_options(std::string& text, const Group& group) {
   Group::fields(group, [&](const Field& field, const auto& value) {
     using Value = std::decay_t<decltype(value)>;
-    text += std::string(field.name) + " = ";
+    const std::string_view old_name = field.old_name;  // files of before stay what they are
+    text += std::string(old_name.empty() ? field.name : old_name) + " = ";
     if constexpr (std::is_enum_v<Value>) {
       text += enum_name(value);
     } else {

@@ -24,7 +24,7 @@ from evaluation.simulation.write import nist_text
 
 from .edge_fits import Candidates, is_place, slides_to
 
-ALL_STAY = ("--revise-below", "0", "--split-below", "0")
+ALL_STAY = ("--verify-below", "0", "--split-below", "0")
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from evaluation.logs.reference_log import reference_poses
 from evaluation.pairs.outcomes import is_right
 
 GAPS = (1, 2, 3, 5)
-MANY_HYPOTHESES = ["--kept-hypotheses", "12", "--refined-hypotheses", "24"]
+MANY_HYPOTHESES = ["--kept-candidates", "12", "--refined-candidates", "24"]
 SCORE_TERMS = ("log(0.05 + agree + 0.25 unclear)", "log(0.05 + cross_agree)", "log(0.02 + crossed)", "rms_m / 0.05")
 PROBABILITY_TERMS = ("1", "margin", "log(margin)", "score", "log(0.02 + agree)")
 LEAST_MARGIN, FULL_MARGIN = 0.05, 20.0

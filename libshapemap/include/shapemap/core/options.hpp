@@ -22,9 +22,16 @@ namespace shapemap {
 struct Field {
   const char* name = "";
   const char* help = "";
-  double lowest = 0.0;   ///< inclusive; ignored for bool and enum
-  double highest = 0.0;  ///< inclusive
-  double unit = 1.0;     ///< stored value = shown value * unit
+  double lowest = 0.0;        ///< inclusive; ignored for bool and enum
+  double highest = 0.0;       ///< inclusive
+  double unit = 1.0;          ///< stored value = shown value * unit
+  const char* old_name = "";  ///< a name that the option had before, and is still accepted
+
+  constexpr Field formerly(const char* name_before) const {
+    Field field = *this;
+    field.old_name = name_before;
+    return field;
+  }
 };
 
 /// The spellings of an enumeration, in the order of its values from 0; specialise as

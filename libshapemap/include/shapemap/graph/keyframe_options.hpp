@@ -17,9 +17,10 @@ struct KeyframeOptions {
                 "a scan nearer than this to a keyframe needs none of its own [m]; 0: each has its own", 0, 10},
           self.step_m);
     visit(Field{"keyframe-turn-deg", "unless it is turned by more [deg]", 0, 180, kDegree}, self.turn_rad);
-    visit(Field{"settle-at",
+    visit(Field{"cull-at",
                 "when there are so many keyframes, loops are closed and those that are there twice let go; 0: never", 0,
-                1000000},
+                1000000}
+              .formerly("settle-at"),
           self.settle_at);
   }
 };

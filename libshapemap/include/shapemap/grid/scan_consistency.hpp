@@ -20,11 +20,14 @@ struct ConsistencyOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit(Field{"agreement-cell-m", "side of the cells in which scans are compared with the others' map [m]", 0.01, 1},
+    visit(Field{"consistency-cell-m", "side of the cells in which scans are compared with the others' map [m]", 0.01, 1}
+              .formerly("agreement-cell-m"),
           self.cell_m);
-    visit(Field{"agreement-tolerance-m", "so far off its place a surface is still the same [m]", 0, 1},
+    visit(Field{"consistency-tolerance-m", "so far off its place a surface is still the same [m]", 0, 1}.formerly(
+              "agreement-tolerance-m"),
           self.tolerance_m);
-    visit(Field{"agreement-min-looks", "so many looks from elsewhere must have seen it otherwise", 1, 1000},
+    visit(Field{"consistency-min-visits", "so many looks from elsewhere must have seen it otherwise", 1, 1000}.formerly(
+              "agreement-min-looks"),
           self.min_looks);
     visit(
         Field{"contradicting-share", "a scan contradicts the map when more of its known beams do; 1: none does", 0, 1},

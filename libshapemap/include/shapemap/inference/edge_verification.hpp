@@ -19,10 +19,12 @@ struct EdgeVerificationOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit(Field{"revise-below", "a less probable alignment that alone joins two pieces of the map is revised; 0: none",
-                0, 1},
+    visit(Field{"verify-below", "a less probable alignment that alone joins two pieces of the map is revised; 0: none",
+                0, 1}
+              .formerly("revise-below"),
           self.doubt_below);
-    visit(Field{"revise-clear-above", "it is searched again, thoroughly, unless it is then as probable as this", 0, 1},
+    visit(Field{"verify-clear-above", "it is searched again, thoroughly, unless it is then as probable as this", 0, 1}
+              .formerly("revise-clear-above"),
           self.clear_above);
   }
 };

@@ -32,7 +32,8 @@ struct MapSearchOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit(Field{"loop-assemblies", "maps of which the best is pursued, put together from sure pieces", 1, 1000},
+    visit(Field{"submap-merges", "maps of which the best is pursued, put together from sure pieces", 1, 1000}.formerly(
+              "loop-assemblies"),
           self.assemblies);
     visit(Field{"loop-doubt-below", "a less probable alignment of the chain may be replaced", 0, 1}, self.doubt_below);
     visit(Field{"loop-repairs", "contradictions that are looked into, in each round", 0, 1000}, self.repairs);

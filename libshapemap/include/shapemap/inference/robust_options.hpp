@@ -31,10 +31,13 @@ struct FrontEndOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit(Field{"companion-weight", "weight of how a pose goes with the scan before the last", 0, 10},
+    visit(Field{"three-scan-weight", "weight of how a pose goes with the scan before the last", 0, 10}.formerly(
+              "companion-weight"),
           self.three_scan_weight);
-    visit(Field{"doubt-below", "a less probable alignment is helped by scans further back", 0, 1}, self.doubt_below);
-    visit(Field{"more-references", "so many of them", 0, 10}, self.more_references);
+    visit(
+        Field{"lend-below", "a less probable alignment is helped by scans further back", 0, 1}.formerly("doubt-below"),
+        self.doubt_below);
+    visit(Field{"lending-keyframes", "so many of them", 0, 10}.formerly("more-references"), self.more_references);
     visit(Field{"split-below", "a less probable alignment that no loop holds splits the map instead", 0, 1},
           self.split_below);
   }

@@ -23,17 +23,23 @@ struct SweepRefinementOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit(Field{"sub-scan-rounds", "rounds of refining the sub-scans of all positions; 0: each position is rigid", 0,
-                100},
+    visit(Field{"sweep-rounds", "rounds of refining the sub-scans of all positions; 0: each position is rigid", 0, 100}
+              .formerly("sub-scan-rounds"),
           self.rounds);
-    visit(Field{"sub-scan-sigma-m", "how far a sub-scan is from its nominal place, standard deviation [m]", 1e-4, 1},
+    visit(Field{"sweep-sigma-m", "how far a sub-scan is from its nominal place, standard deviation [m]", 1e-4, 1}
+              .formerly("sub-scan-sigma-m"),
           self.sigma_m);
-    visit(Field{"sub-scan-sigma-deg", "and how much it is turned [deg]", 0.01, 45, kDegree}, self.sigma_rad);
-    visit(Field{"sub-scan-within-m", "sub-scans of positions nearer than this are aligned to each other [m]", 0.1, 100},
+    visit(Field{"sweep-sigma-deg", "and how much it is turned [deg]", 0.01, 45, kDegree}.formerly("sub-scan-sigma-deg"),
+          self.sigma_rad);
+    visit(Field{"sweep-within-m", "sub-scans of positions nearer than this are aligned to each other [m]", 0.1, 100}
+              .formerly("sub-scan-within-m"),
           self.within_m);
-    visit(Field{"sub-scan-gate-m", "points of two sub-scans farther apart than this are no partners [m]", 0.01, 1},
-          self.gate_m);
-    visit(Field{"sub-scan-least-partners", "two sub-scans with fewer partners are not aligned", 3, 10000},
+    visit(
+        Field{"sweep-gate-m", "points of two sub-scans farther apart than this are no partners [m]", 0.01, 1}.formerly(
+            "sub-scan-gate-m"),
+        self.gate_m);
+    visit(Field{"sweep-least-partners", "two sub-scans with fewer partners are not aligned", 3, 10000}.formerly(
+              "sub-scan-least-partners"),
           self.least_partners);
   }
 };

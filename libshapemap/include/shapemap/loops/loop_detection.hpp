@@ -27,8 +27,9 @@ struct LoopDetectionOptions {
           self.shortest_loop);
     visit(Field{"loop-least-probability", "a less probable alignment is not considered for a loop", 0, 1},
           self.least_probability);
-    visit(Field{"loop-bridge-below",
-                "about a less probable alignment of the chain, all scans are aligned to each other", 0, 1},
+    visit(Field{"cross-match-below",
+                "about a less probable alignment of the chain, all scans are aligned to each other", 0, 1}
+              .formerly("loop-bridge-below"),
           self.bridge_below);
   }
 };

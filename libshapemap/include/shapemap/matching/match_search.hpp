@@ -28,8 +28,9 @@ struct CandidateOptions {
     visit(Field{"all-rotations-step-deg", "step between them [deg]", 0.5, 180, kDegree}, self.all_rotations_step_rad);
     visit(Field{"shape-segments", "longest segments of the LCS that put up a translation", 0, 1000},
           self.shape_segments);
-    visit(Field{"refined-hypotheses", "poses that are refined", 1, 1000}, self.refined);
-    visit(Field{"kept-hypotheses", "distinct poses that are kept, best first", 1, 100}, self.kept);
+    visit(Field{"refined-candidates", "poses that are refined", 1, 1000}.formerly("refined-hypotheses"), self.refined);
+    visit(Field{"kept-candidates", "distinct poses that are kept, best first", 1, 100}.formerly("kept-hypotheses"),
+          self.kept);
   }
 };
 
