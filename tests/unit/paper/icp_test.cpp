@@ -258,7 +258,7 @@ TEST(DecoupledIcp, CorrectionsAreInTheFrameOfTheQuery) {
   const std::vector<Pose2> here =
       decoupled_icp(map_of(scans.right), scans.wrong, {{}, kMeanDistance_m}, kWholeScan, kOverlap);
   const std::vector<Pose2> there = decoupled_icp(map_of(moved(scans.right, map_from_query)), scans.wrong,
-                                                 map_from_query, kMeanDistance_m, kWholeScan, kOverlap);
+                                                 {map_from_query, kMeanDistance_m}, kWholeScan, kOverlap);
   for (std::size_t s = 0; s < 4; ++s) EXPECT_THAT(there[s], IsNearPose(here[s], 1e-3, 0.05 * kDegree)) << s;
 }
 
