@@ -15,11 +15,11 @@ std::string counted(std::size_t count, const char* what) {
 
 /// Whether an alignment to the positions before is behind its place; not so at the start of a log.
 bool is_chained(const ScanResult& scan) {
-  return scan.component >= 0 && !scan.starts_component && scan.match.status != MatchStatus::kNoShape;
+  return scan.component >= 0 && !scan.starts_component && !scan.is_without_shape();
 }
 
 /// What makes the map though its alignment is in doubt.
-bool is_doubtful(const ScanResult& scan) { return is_chained(scan) && !scan.match.ok(); }
+bool is_doubtful(const ScanResult& scan) { return is_chained(scan) && !scan.is_sure(); }
 
 bool is_uncertain(const ScanResult& scan) { return is_doubtful(scan) && !scan.loop_constrained; }
 
@@ -27,7 +27,7 @@ std::vector<std::string> uncertain_lines(const LogSet& logs, const MapResult& re
   std::vector<std::string> lines;
   for (const ScanResult& scan : result.scans) {
     if (!is_uncertain(scan)) continue;
-    lines.push_back(logs.scan_name(scan.scan_index) + " " + enum_name(scan.match.status) + ": " + scan.match.reason);
+    lines.push_back(logs.scan_name(scan.scan_index) + " " + scan.status_text() + ": " + scan.alignment_reason());
   }
   return lines;
 }

@@ -113,7 +113,7 @@ BENCHMARK(BM_LcsByDynamicProgramming)->Unit(benchmark::kMillisecond);
 
 /// Five rotations against three scans, from shapes to pose; the argument is the number of ICP iterations allowed.
 void BM_Align(benchmark::State& state) {
-  AlignOptions options;
+  PaperOptions options;
   options.icp.max_iterations = static_cast<int>(state.range(0));
   options.icp.decoupled = options.icp.max_iterations > 0;
   const Shape query = full_shape(kQuery);
@@ -121,7 +121,7 @@ void BM_Align(benchmark::State& state) {
   for (const Shape& scan : target_scans()) scans.push_back(target_scan(scan, options.histogram.radius_m));
   for (auto _ : state) {
     const PartialMap target(scans);
-    benchmark::DoNotOptimize(align(target, query, options));
+    benchmark::DoNotOptimize(paper_align(target, query, options));
   }
   set_sizes(state, query.size(), 3 * kNumPoints);
 }

@@ -137,16 +137,15 @@ inline MappingOptions paper_options() {
   options.shape.points = ShapePoints::kResampled;
   options.shape.spacing_m = 0.05;
   options.shape.min_points = 10;
-  options.align.histogram = {0.50, HistogramNorm::kMaximum};
-  options.align.similarity = {10 * kDegree, 0.25, 2};
-  options.align.rotation = {2 * kDegree, 1 * kDegree};
-  options.align.lcs.target = LcsTarget::kPerScan;
-  options.align.filters = {10 * kDegree, 0.30, 2.0, 0.20};
-  options.align.overlap = {0.40, 10 * kDegree, OverlapRule::kNearest};
-  options.align.icp = {20, IcpGate::kFactor, 3.0, false};
-  options.align.trust = {1, 0.10};
-  options.align.min_points = 10;
-  options.align.target.target_scans = 3;
+  options.paper.histogram = {0.50, HistogramNorm::kMaximum};
+  options.paper.similarity = {10 * kDegree, 0.25, 2};
+  options.paper.rotation = {2 * kDegree, 1 * kDegree};
+  options.paper.lcs.target = LcsTarget::kPerScan;
+  options.paper.filters = {10 * kDegree, 0.30, 2.0, 0.20};
+  options.paper.overlap = {0.40, 10 * kDegree, OverlapRule::kNearest};
+  options.paper.icp = {20, IcpGate::kFactor, 3.0, false};
+  options.paper.trust = {1, 0.10};
+  options.paper.target.target_scans = 3;
   return options;
 }
 

@@ -40,8 +40,6 @@ Json ranked_json(const RankedPose& ranked) {
           {"partners", ranked.partners}};
 }
 
-bool was_aligned(const ScanResult& scan) { return scan.match.status != MatchStatus::kNoShape || !scan.reason.empty(); }
-
 double shown(double stored, double unit) {
   char text[32];
   std::snprintf(text, sizeof text, "%.14g", stored / unit);

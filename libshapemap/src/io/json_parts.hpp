@@ -25,9 +25,6 @@ Json covariance_json(const Eigen::Matrix3d& covariance);
 
 Json ranked_json(const RankedPose& ranked);
 
-/// False at the start of a log and where the paper's chain starts anew, where there is nothing to align to.
-bool was_aligned(const ScanResult& scan);
-
 /// In the unit of the option's name and without the last bits, which converting there and back leaves behind.
 double shown(double stored, double unit);
 

@@ -111,25 +111,28 @@ Json ranked_json(const std::vector<RankedPose>& ranked) {
   return list;
 }
 
+/// What only one of the two methods tells stands there for the other as well, empty.
 Json match_json(const ScanResult& scan, std::size_t reference) {
-  if (!was_aligned(scan)) return nullptr;
-  const ScanMatch& match = scan.match;
-  const auto if_any = [&](const Pose2& pose) { return match.has_pose() ? pose_json(pose) : Json(nullptr); };
-  return {{"status", enum_name(match.status)},
+  if (!scan.was_aligned()) return nullptr;
+  const PaperAlignment paper = scan.paper.value_or(PaperAlignment());
+  const std::vector<RankedPose>& ranked = scan.match.ranked;
+  const double agree = ranked.empty() ? 0.0 : ranked.front().agree;
+  const auto if_any = [&](const Pose2& pose) { return scan.has_pose() ? pose_json(pose) : Json(nullptr); };
+  return {{"status", scan.status_text()},
           {"reference", reference == kNoReference ? Json(nullptr) : Json(reference)},
-          {"ref_from_query", if_any(match.ref_from_query)},
-          {"shape_ref_from_query", if_any(match.shape_ref_from_query)},
-          {"icp_ref_from_query", if_any(match.icp_ref_from_query)},
-          {"probability", number_json(match.probability)},
-          {"covariance", covariance_json(match.covariance)},
-          {"ranked", ranked_json(match.ranked)},
-          {"rotation_deg", match.rotation_rad / kDegree},
-          {"num_correspondences", match.num_correspondences},
-          {"mean_distance_m", match.mean_distance_m},
-          {"overlap", match.overlap},
-          {"overlap_ratio", match.overlap_ratio},
-          {"icp_iterations", match.icp_iterations},
-          {"query_from_sub_scan", poses_json(match.query_from_sweep)}};
+          {"ref_from_query", if_any(scan.ref_from_query())},
+          {"shape_ref_from_query", if_any(paper.shape_ref_from_query)},
+          {"icp_ref_from_query", if_any(paper.icp_ref_from_query)},
+          {"probability", number_json(scan.match.probability)},
+          {"covariance", covariance_json(scan.match.covariance)},
+          {"ranked", ranked_json(ranked)},
+          {"rotation_deg", paper.rotation_rad / kDegree},
+          {"num_correspondences", paper.num_correspondences},
+          {"mean_distance_m", paper.mean_distance_m},
+          {"overlap", paper.overlap},
+          {"overlap_ratio", scan.paper ? paper.overlap_ratio : agree},
+          {"icp_iterations", paper.icp_iterations},
+          {"query_from_sub_scan", poses_json(paper.query_from_sweep)}};
 }
 
 Json scan_json(const ScanResult& scan, std::size_t reference, const RunReport& report) {

@@ -31,8 +31,8 @@ void TraceFile::on_shape(std::size_t scan_index, const std::vector<ShapePoint>& 
   write_line(scan_json(run_, scan_index, points), *sink_);
 }
 
-void TraceFile::on_alignment(const TracedAlignment& match) {
-  write_line(match_json(match, run_.mapping.align.lcs.target), *sink_);
+void TraceFile::on_alignment(const TracedAlignment& alignment) {
+  write_line(alignment_json(alignment, run_.mapping.paper.lcs.target), *sink_);
 }
 
 void TraceFile::on_link(const TracedLink& edge) { write_line(link_json(edge), *sink_); }

@@ -87,13 +87,13 @@ Json targets_json(const std::vector<TracedTarget>& targets) {
   return all;
 }
 
-void add_best_rotation(const TracedAlignment& match, LcsTarget target, Json& all) {
-  const AlignTrace& steps = match.steps;
+void add_best_rotation(const TracedAlignment& traced, LcsTarget target, Json& all) {
+  const PaperTrace& steps = traced.steps;
   all["best_rotation"] = nullptr;
   for (const char* name : {"lcs", "spread", "segments", "kept"}) all[name] = Json::array();
   if (steps.best_rotation < 0) return;
   const RotationMatch& best = steps.rotations.at(static_cast<std::size_t>(steps.best_rotation));
-  const PairNames names(match.targets, target);
+  const PairNames names(traced.targets, target);
   all["best_rotation"] = steps.best_rotation;
   all["lcs"] = names(best.lcs);
   all["spread"] = names(best.spread);
@@ -154,22 +154,22 @@ Json scan_json(const TracedRun& run, std::size_t scan_index, const std::vector<S
               {"sub_scans", sweeps},
               {"points", shape}};
   if (run.mapping.run.method == Method::kPaper) {
-    all["histograms"] = histograms_json(points, run.mapping.align.histogram);
+    all["histograms"] = histograms_json(points, run.mapping.paper.histogram);
   }
   return all;
 }
 
-Json match_json(const TracedAlignment& match, LcsTarget target) {
-  const ScanMatch& result = match.match;
+Json alignment_json(const TracedAlignment& traced, LcsTarget target) {
+  const PaperAlignment& result = traced.alignment;
   Json rotations = Json::array();
-  for (const RotationMatch& rotation : match.steps.rotations) rotations.push_back(rotation_json(rotation));
-  Json all = {{"record", "alignment"},      {"reference", match.targets.back().scan_index},
-              {"query", match.query_index}, {"status", enum_name(result.status)},
-              {"reason", result.reason},    {"targets", targets_json(match.targets)},
+  for (const RotationMatch& rotation : traced.steps.rotations) rotations.push_back(rotation_json(rotation));
+  Json all = {{"record", "alignment"},       {"reference", traced.targets.back().scan_index},
+              {"query", traced.query_index}, {"status", enum_name(result.status)},
+              {"reason", result.reason},     {"targets", targets_json(traced.targets)},
               {"rotations", rotations}};
-  add_best_rotation(match, target, all);
+  add_best_rotation(traced, target, all);
   all["shape_ref_from_query"] = pose_array(result.shape_ref_from_query);
-  all["icp_steps"] = pose_arrays(match.steps.icp.steps);
+  all["icp_steps"] = pose_arrays(traced.steps.icp.steps);
   all["icp_ref_from_query"] = pose_array(result.icp_ref_from_query);
   all["query_from_sub_scan"] = pose_arrays(result.query_from_sweep);
   all["overlap"] = result.overlap;
@@ -211,17 +211,16 @@ Json revision_json(const TracedRevision& revision) {
 }
 
 Json result_json(const ScanResult& scan, const PlacedScan* placed) {
-  const ScanMatch& match = scan.match;
   return {{"record", "result"},
           {"index", scan.scan_index},
           {"timestamp_s", number_json(scan.timestamp_s)},
           {"fragment", scan.component},
           {"starts_fragment", scan.starts_component},
-          {"status", was_aligned(scan) ? Json(enum_name(match.status)) : Json(nullptr)},
+          {"status", scan.was_aligned() ? Json(scan.status_text()) : Json(nullptr)},
           {"reason", scan.reason},
-          {"ref_from_query", match.has_pose() ? pose_array(match.ref_from_query) : Json(nullptr)},
-          {"probability", number_json(match.probability)},
-          {"covariance", covariance_json(match.covariance)},
+          {"ref_from_query", scan.has_pose() ? pose_array(scan.ref_from_query()) : Json(nullptr)},
+          {"probability", number_json(scan.match.probability)},
+          {"covariance", covariance_json(scan.match.covariance)},
           {"fragment_from_robot", placed ? pose_array(placed->map_from_robot) : Json(nullptr)},
           {"robot_from_sub_scan", placed ? pose_arrays(placed->robot_from_sweep) : Json::array()}};
 }

@@ -12,7 +12,7 @@ Json run_json(const TracedRun& run);
 /// `points` are those that the method looks at. Polylines and histograms are made once more, the same way.
 Json scan_json(const TracedRun& run, std::size_t scan_index, const std::vector<ShapePoint>& points);
 
-Json match_json(const TracedAlignment& match, LcsTarget target);
+Json alignment_json(const TracedAlignment& traced, LcsTarget target);
 Json link_json(const TracedLink& edge);
 Json choice_json(const TracedChoice& choice);
 Json revision_json(const TracedRevision& revision);

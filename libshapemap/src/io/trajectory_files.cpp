@@ -53,7 +53,7 @@ bool is_covariance(const Eigen::Matrix3d& matrix) {
 Eigen::Matrix3d covariance_of(const Pose2& motion, const ScanResult& scan, const ScanResult* sibling) {
   const ScanMatch& match = scan.match;
   if (!match.covariance.allFinite()) {
-    if (match.has_pose()) {
+    if (scan.has_pose()) {
       throw ConfigError("motions need covariances, which only the robust method gives; use --method robust");
     }
     return kUnheld.asDiagonal();

@@ -45,18 +45,6 @@ MapResult map_robustly(const Log& log, const MappingOptions& options, RunObserve
 
 }  // namespace
 
-const std::vector<PlacedScan>& MapResult::placed() const {
-  static const std::vector<PlacedScan> none;
-  return largest_component < 0 ? none : components[static_cast<std::size_t>(largest_component)].scans;
-}
-
-std::string MapResult::why_not_in_map(const ScanResult& scan) const {
-  if (scan.component < 0) return scan.reason;
-  if (scan.component == largest_component) return "";
-  return scan.reason + (scan.reason.empty() ? "" : "; ") + "in fragment " + std::to_string(scan.component) +
-         ", which nothing ties to the map";
-}
-
 MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
                   MatchCache* store) {
   validate_all(options);
@@ -64,7 +52,7 @@ MapResult map_log(const Log& log, const MappingOptions& options, RunObserver& ob
   MapResult result;
   try {
     if (options.run.method == Method::kPaper) {
-      chain_by_paper(log, options, observer, sink, result);
+      map_by_paper(log, options, observer, sink, result);
     } else {
       result = map_robustly(log, options, observer, sink, store);
     }

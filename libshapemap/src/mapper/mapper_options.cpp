@@ -7,13 +7,7 @@ void make_strict_paper(MappingOptions& options) {
   options.run.method = Method::kPaper;
   options.deskew.mode = Deskew::kOff;
   options.shape.points = ShapePoints::kBeams;
-  options.align.histogram.norm = HistogramNorm::kCount;
-  options.align.lcs.target = LcsTarget::kConcatenated;
-  options.align.filters.main_segments = 1;
-  options.align.overlap.rule = OverlapRule::kAny;
-  options.align.icp.gate = IcpGate::kSlack;
-  options.align.icp.decoupled_max_shift_m = 10.0;  // no limit: the largest values that the options allow
-  options.align.icp.decoupled_max_turn_rad = kPi;
+  read_literally(options.paper);
 }
 
 void validate_all(const MappingOptions& options) {

@@ -9,11 +9,11 @@
 #include "shapemap/scan/scan.hpp"
 
 /// The two ways to map a log. Each fills in positions, fragments and times, and throws Interrupted when the observer
-/// asks to stop; what is in `result` then is whole. `sink` and `store` may be null.
+/// asks to stop; what is in `result` then is whole. `listener`, `sink` and `store` may be null.
 namespace shapemap {
 
-/// The paper's: each scan against the partial map of the few before it.
-void chain_by_paper(const Log& log, const MappingOptions& options, RunObserver& observer, TraceSink* sink,
-                    MapResult& result);
+/// The paper's: each scan is pushed into a PaperMapper.
+void map_by_paper(const Log& log, const MappingOptions& options, RunObserver& observer, PaperListener* listener,
+                  MapResult& result);
 
 }  // namespace shapemap

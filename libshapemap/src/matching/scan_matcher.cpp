@@ -56,7 +56,7 @@ ScanMatch judged(const std::vector<MatchCandidate>& candidates, std::size_t chos
                  const ConfidenceOptions& options, std::optional<double> probability) {
   ScanMatch match;
   if (candidates.empty()) {
-    match.status = MatchStatus::kNoCorrespondences;
+    match.status = MatchStatus::kNoCandidates;
     match.reason = "no pose brings similar surfaces together";
     return match;
   }
@@ -71,8 +71,7 @@ ScanMatch judged(const std::vector<MatchCandidate>& candidates, std::size_t chos
   // Those that scans further back have lent stand behind the others.
   std::stable_sort(match.ranked.begin() + 1, match.ranked.end(),
                    [](const RankedPose& a, const RankedPose& b) { return a.score > b.score; });
-  match.overlap_ratio = match.ranked.front().agree;
-  give_verdict(match, match.overlap_ratio, options);
+  give_verdict(match, match.ranked.front().agree, options);
   return match;
 }
 

@@ -8,7 +8,7 @@
 namespace shapemap {
 namespace {
 
-/// Angle between two lines without direction, in [0, pi / 2].
+/// Returns the angle between two lines without direction, in [0, pi / 2].
 double line_angle_rad(double a_rad, double b_rad) {
   const double angle_rad = angle_between(a_rad, b_rad);
   return std::min(angle_rad, kPi - angle_rad);

@@ -7,7 +7,7 @@
 namespace shapemap {
 namespace {
 
-/// Below this motion an iteration changes nothing that can be seen in a map.
+/// An iteration that moves the query by less than this changes nothing that can be seen in a map.
 constexpr double kStillMotion_m = 1e-5;
 constexpr double kStillTurn_rad = 1e-6;
 
@@ -28,7 +28,7 @@ bool is_still(const Pose2& after, const Pose2& before) {
          angle_between(after.theta_rad, before.theta_rad) < kStillTurn_rad;
 }
 
-Shape only_sub_scan(const Shape& shape, int sweep) {
+Shape only_sweep(const Shape& shape, int sweep) {
   Shape part;
   part.num_sweeps = 1;
   std::copy_if(shape.points.begin(), shape.points.end(), std::back_inserter(part.points),
@@ -60,17 +60,17 @@ Pose2 fit_pose(const PartialMap& target, const Shape& query, const std::vector<P
   return {translation_m.x(), translation_m.y(), theta_rad};
 }
 
-IcpResult icp(const PartialMap& target, const Shape& query, const Pose2& start, double mean_distance_m,
-              const IcpOptions& options, const OverlapOptions& overlap_options) {
+IcpResult icp(const PartialMap& target, const Shape& query, const IcpStart& start, const IcpOptions& options,
+              const OverlapOptions& overlap_options) {
   IcpResult result;
-  result.target_from_query = start;
-  result.steps.push_back(start);
-  double limit_m = mean_distance_m + overlap_options.slack_m;
-  std::vector<Partner> partners = partners_within(target, query, start, limit_m, overlap_options);
+  result.target_from_query = start.target_from_query;
+  result.steps.push_back(start.target_from_query);
+  double limit_m = start.mean_distance_m + overlap_options.slack_m;
+  std::vector<Partner> partners = partners_within(target, query, start.target_from_query, {limit_m}, overlap_options);
   // From here on the thresholds follow the mean distance of the scan points that the start aligns.
   const double aligned_m = scan_overlap(partners).mean_distance_m;
   limit_m = aligned_m + overlap_options.slack_m;
-  partners = partners_within(target, query, start, limit_m, overlap_options);
+  partners = partners_within(target, query, start.target_from_query, {limit_m}, overlap_options);
   result.overlap = scan_overlap(partners);
 
   while (result.iterations < options.max_iterations) {
@@ -79,7 +79,7 @@ IcpResult icp(const PartialMap& target, const Shape& query, const Pose2& start, 
     const std::vector<Partner> pulling = closer_than(partners, gate_m);
     if (pulling.size() < 3) break;
     const Pose2 moved_pose = fit_pose(target, query, pulling);
-    partners = partners_within(target, query, moved_pose, limit_m, overlap_options);
+    partners = partners_within(target, query, moved_pose, {limit_m}, overlap_options);
     const ScanOverlap overlap = scan_overlap(partners);
     if (is_worse(overlap, result.overlap)) break;
     const bool still = is_still(moved_pose, result.target_from_query);
@@ -92,15 +92,13 @@ IcpResult icp(const PartialMap& target, const Shape& query, const Pose2& start, 
   return result;
 }
 
-std::vector<Pose2> decoupled_icp(const PartialMap& target, const Shape& query, const Pose2& target_from_query,
-                                 double mean_distance_m, const IcpOptions& options,
-                                 const OverlapOptions& overlap_options) {
+std::vector<Pose2> decoupled_icp(const PartialMap& target, const Shape& query, const IcpStart& start,
+                                 const IcpOptions& options, const OverlapOptions& overlap_options) {
   std::vector<Pose2> query_from_sweep(static_cast<std::size_t>(query.num_sweeps));
   if (query.num_sweeps < 2) return query_from_sweep;
   for (int s = 0; s < query.num_sweeps; ++s) {
-    const Shape part = only_sub_scan(query, s);
-    const IcpResult refined = icp(target, part, target_from_query, mean_distance_m, options, overlap_options);
-    const Pose2 correction = inverse(target_from_query) * refined.target_from_query;
+    const IcpResult refined = icp(target, only_sweep(query, s), start, options, overlap_options);
+    const Pose2 correction = inverse(start.target_from_query) * refined.target_from_query;
     const bool small = correction.translation().norm() <= options.decoupled_max_shift_m &&
                        std::abs(correction.theta_rad) <= options.decoupled_max_turn_rad;
     if (small) query_from_sweep[static_cast<std::size_t>(s)] = correction;

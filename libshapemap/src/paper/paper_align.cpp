@@ -14,13 +14,13 @@
 namespace shapemap {
 namespace {
 
-/// The target's side of all rotations.
+/// The target, which is the same for all rotations of the query, ready to be compared with.
 struct MatchTarget {
   const PartialMap& map;
   std::vector<SimilarityIndex> indices;  ///< one per sequence
 };
 
-MatchTarget match_target(const PartialMap& map, const AlignOptions& options) {
+MatchTarget match_target(const PartialMap& map, const PaperOptions& options) {
   MatchTarget target{map, {}};
   for (const TargetScan& sequence : map.sequences()) {
     ScanFeatures features;
@@ -32,9 +32,10 @@ MatchTarget match_target(const PartialMap& map, const AlignOptions& options) {
   return target;
 }
 
-/// The paper's steps for one rotation: LCS, collinear filter, segment filter, segment-wise translation, scan overlap.
+/// Takes the paper's steps for one rotation: LCS, collinear filter, segment filter, segment-wise translation and scan
+/// overlap measure.
 RotationMatch match_at_rotation(const MatchTarget& target, const Shape& query, const NeighbourDirections& directions,
-                                double rotation_rad, const AlignOptions& options) {
+                                double rotation_rad, const PaperOptions& options) {
   RotationMatch match;
   match.rotation_rad = rotation_rad;
   const Shape turned = moved(query, {0.0, 0.0, rotation_rad});
@@ -53,7 +54,7 @@ RotationMatch match_at_rotation(const MatchTarget& target, const Shape& query, c
     const bool is_first = match.translation.num_correspondences == 0;
     const std::size_t to_win = is_first ? 0 : static_cast<std::size_t>(match.overlap.num_points) + 1;
     const ScanOverlap overlap =
-        scan_overlap(partners_within(target.map, query, target_from_query, limit_m, options.overlap, to_win));
+        scan_overlap(partners_within(target.map, query, target_from_query, {limit_m, to_win}, options.overlap));
     if (static_cast<std::size_t>(overlap.num_points) < to_win) continue;
     match.segments = std::move(segments);
     match.translation = translation;
@@ -62,7 +63,7 @@ RotationMatch match_at_rotation(const MatchTarget& target, const Shape& query, c
   return match;
 }
 
-/// Passes the question whether to go on to whoever may be asked from one thread only, and the answer to all threads.
+/// Asks whether to go on from the thread that aligns only, and tells all threads the answer.
 class StopCheck {
  public:
   explicit StopCheck(const std::function<bool()>& keep_going) : keep_going_(keep_going) {}
@@ -81,22 +82,29 @@ class StopCheck {
   std::atomic<bool> stopped_{false};
 };
 
-/// Every rotation of the grid, each by itself.
-std::vector<RotationMatch> match_rotations(const MatchTarget& target, const Shape& query, const AlignOptions& options,
-                                           bool keep_hypotheses, StopCheck& stop) {
+/// What rotations are shared among, and what ends them.
+struct Threads {
+  int count;
+  StopCheck& stop;
+};
+
+/// Every rotation of the grid, each by itself. The hypotheses of all rotations need much memory.
+std::vector<RotationMatch> match_rotations(const MatchTarget& target, const Shape& query, const PaperOptions& options,
+                                           bool keep_hypotheses, Threads threads) {
   const NeighbourDirections directions(query, options.histogram.radius_m);
   const std::vector<double> rotations = rotation_grid(options.rotation);
   std::vector<RotationMatch> matches(rotations.size());
-  parallel_for(rotations.size(), options.threads, [&](std::size_t i) {
-    if (stop.stopped()) return;
+  parallel_for(rotations.size(), threads.count, [&](std::size_t i) {
+    if (threads.stop.stopped()) return;
     matches[i] = match_at_rotation(target, query, directions, rotations[i], options);
     if (!keep_hypotheses) matches[i].lcs = matches[i].spread = {};
   });
-  stop.throw_if_stopped();
+  threads.stop.throw_if_stopped();
   return matches;
 }
 
-/// The rotation with the largest overlap; of equals, the smallest turn. -1 when no rotation had a correspondence.
+/// Returns the rotation with the largest scan overlap; of equals, the smallest turn. -1 when no rotation had a
+/// correspondence.
 int best_rotation(const std::vector<RotationMatch>& matches) {
   int best = -1;
   for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -110,7 +118,7 @@ int best_rotation(const std::vector<RotationMatch>& matches) {
   return best;
 }
 
-ScanMatch refused(ScanMatch alignment, MatchStatus status, const std::string& reason) {
+PaperAlignment refused(PaperAlignment alignment, PaperStatus status, const std::string& reason) {
   alignment.status = status;
   alignment.reason = reason;
   alignment.ref_from_query = kNoPose;
@@ -124,20 +132,20 @@ std::string text(const Parts&... parts) {
   return stream.str();
 }
 
-/// The verdict on a finished alignment.
-ScanMatch judged(ScanMatch alignment, const TrustOptions& trust) {
+/// Gives the verdict on a finished alignment.
+PaperAlignment judged(PaperAlignment alignment, const TrustOptions& trust) {
   if (alignment.num_correspondences < trust.min_correspondences) {
     const std::string reason =
         text("only ", alignment.num_correspondences, " correspondences support the best translation, ",
              trust.min_correspondences, " are needed");
-    return refused(std::move(alignment), MatchStatus::kTooFewCorrespondences, reason);
+    return refused(std::move(alignment), PaperStatus::kTooFewCorrespondences, reason);
   }
   if (alignment.overlap_ratio < trust.min_overlap_ratio) {
     const std::string reason = text("the aligned scan overlaps in ", alignment.overlap, " points, a share of ",
                                     alignment.overlap_ratio, ", ", trust.min_overlap_ratio, " is needed");
-    return refused(std::move(alignment), MatchStatus::kTooLittleOverlap, reason);
+    return refused(std::move(alignment), PaperStatus::kTooLittleOverlap, reason);
   }
-  alignment.status = MatchStatus::kOk;
+  alignment.status = PaperStatus::kOk;
   return alignment;
 }
 
@@ -167,21 +175,22 @@ std::vector<double> rotation_grid(const RotationOptions& options) {
   return rotations;
 }
 
-ScanMatch align(const PartialMap& target, const Shape& query, const AlignOptions& options, AlignTrace* trace) {
-  ScanMatch result;
+PaperAlignment paper_align(const PartialMap& target, const Shape& query, const PaperOptions& options,
+                           const PaperRun& run, PaperTrace* trace) {
+  PaperAlignment result;
   Stopwatch watch;
-  StopCheck stop(options.keep_going);
+  StopCheck stop(run.keep_going);
   if (trace) *trace = {};  // of an earlier alignment
-  const auto min_points = static_cast<std::size_t>(options.min_points);
+  const auto min_points = static_cast<std::size_t>(run.min_points);
   if (target.num_points() < min_points || query.size() < min_points) {
-    return refused(std::move(result), MatchStatus::kNoShape,
+    return refused(std::move(result), PaperStatus::kNoShape,
                    text("the scan has ", query.size(), " shape points and its target ", target.num_points(), ", ",
-                        options.min_points, " are needed"));
+                        run.min_points, " are needed"));
   }
 
-  // The rotation with the largest overlap wins. Only a trace wants to see the hypotheses.
+  // The rotation with the largest scan overlap wins. Only a trace wants to see the hypotheses.
   const std::vector<RotationMatch> matches =
-      match_rotations(match_target(target, options), query, options, trace != nullptr, stop);
+      match_rotations(match_target(target, options), query, options, trace != nullptr, {run.threads, stop});
   const int best = best_rotation(matches);
   result.match_s = watch.lap_s();
   if (trace) {
@@ -189,7 +198,7 @@ ScanMatch align(const PartialMap& target, const Shape& query, const AlignOptions
     trace->best_rotation = best;
   }
   if (best < 0) {
-    return refused(std::move(result), MatchStatus::kNoCorrespondences, "no similar structure was found");
+    return refused(std::move(result), PaperStatus::kNoCorrespondences, "no similar structure was found");
   }
   const RotationMatch& match = matches[static_cast<std::size_t>(best)];
   result.rotation_rad = match.rotation_rad;
@@ -197,9 +206,9 @@ ScanMatch align(const PartialMap& target, const Shape& query, const AlignOptions
   result.mean_distance_m = match.translation.mean_distance_m;
   result.shape_ref_from_query = match.target_from_query();
 
-  // ICP on the whole scan, then on each sub-scan.
+  // ICP runs on the complete scan and then on each of its sweeps.
   IcpResult refined =
-      icp(target, query, match.target_from_query(), result.mean_distance_m, options.icp, options.overlap);
+      icp(target, query, {match.target_from_query(), result.mean_distance_m}, options.icp, options.overlap);
   result.ref_from_query = result.icp_ref_from_query = refined.target_from_query;
   result.overlap = refined.overlap.num_points;
   result.overlap_ratio = static_cast<double>(result.overlap) / static_cast<double>(query.size());
@@ -208,17 +217,18 @@ ScanMatch align(const PartialMap& target, const Shape& query, const AlignOptions
   stop.throw_if_stopped();
   result.query_from_sweep.resize(static_cast<std::size_t>(query.num_sweeps));
   if (options.icp.decoupled) {
-    result.query_from_sweep = decoupled_icp(target, query, refined.target_from_query, refined.overlap.mean_distance_m,
-                                            options.icp, options.overlap);
+    const IcpStart start{refined.target_from_query, refined.overlap.mean_distance_m};
+    result.query_from_sweep = decoupled_icp(target, query, start, options.icp, options.overlap);
   }
   result.decoupled_icp_s = watch.lap_s();
   if (trace) trace->icp = std::move(refined);
   return judged(std::move(result), options.trust);
 }
 
-ScanMatch align(const Shape& reference, const Shape& query, const AlignOptions& options, AlignTrace* trace) {
+PaperAlignment paper_align(const Shape& reference, const Shape& query, const PaperOptions& options, const PaperRun& run,
+                           PaperTrace* trace) {
   const bool as_one_sequence = options.lcs.target == LcsTarget::kConcatenated;
-  return align(PartialMap({reference}, as_one_sequence, options.histogram.radius_m), query, options, trace);
+  return paper_align(PartialMap({reference}, as_one_sequence, options.histogram.radius_m), query, options, run, trace);
 }
 
 }  // namespace shapemap

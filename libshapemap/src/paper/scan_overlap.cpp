@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace shapemap {
 namespace {
@@ -33,15 +34,15 @@ std::optional<Partner> nearest_similar_partner(const PartialMap& target, const P
 }  // namespace
 
 std::vector<Partner> partners_within(const PartialMap& target, const Shape& query, const Pose2& target_from_query,
-                                     double max_distance_m, const OverlapOptions& options, std::size_t at_least) {
+                                     const PartnerLimits& limits, const OverlapOptions& options) {
   const auto find = options.rule == OverlapRule::kNearest ? nearest_partner : nearest_similar_partner;
   std::vector<Partner> partners;
   for (std::size_t i = 0; i < query.size(); ++i) {
-    if (partners.size() + query.size() - i < at_least) break;
+    if (partners.size() + query.size() - i < limits.at_least) break;
     const ShapePoint& point = query.points[i];
     std::optional<Partner> partner =
-        find(target, target_from_query * point.p_m, point.tangent_rad + target_from_query.theta_rad, max_distance_m,
-             options.tangent_tolerance_rad);
+        find(target, target_from_query * point.p_m, point.tangent_rad + target_from_query.theta_rad,
+             limits.max_distance_m, options.tangent_tolerance_rad);
     if (!partner) continue;
     partner->query = i;
     partners.push_back(*partner);

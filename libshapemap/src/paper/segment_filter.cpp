@@ -6,7 +6,7 @@
 namespace shapemap {
 namespace {
 
-/// A segment in the part of the main one.
+/// What a segment is worth as the main segment.
 struct MainSegment {
   Point2 translation_m{0.0, 0.0};
   std::vector<std::size_t> survivors;  ///< indices of the segments that are not much worse

@@ -12,16 +12,16 @@ namespace {
 
 using Word = BitMatrix::Word;
 
-/// Levels of a stored bin, 0 to kHistogramScale, and one more that none reaches.
+/// A stored bin has the levels 0 to kHistogramScale; there is one more, that none reaches.
 constexpr std::size_t kLevels = static_cast<std::size_t>(kHistogramScale) + 2;
 
-/// Words that are worked on together, so that compilers make vector code of it.
+/// So many words are worked on together, so that compilers make vector code of it.
 constexpr std::size_t kBlock = 2;
 constexpr std::size_t kBlockPoints = kBlock * BitMatrix::kWordBits;
 constexpr std::size_t kWordsPerBlock = kHistogramBins * kLevels * kBlock;
 
-/// Counters for 64 * kBlock target points, one bit of each to a word, that stay at "too many" once they overflow.
-/// They count to 2 ^ kPlanes - 1.
+/// Counts for 64 * kBlock target points at once, one bit of each counter to a word. The counters go to
+/// 2 ^ kPlanes - 1 and stay at "too many" once they overflow.
 template <std::size_t kPlanes>
 class BitCounters {
  public:
@@ -54,7 +54,7 @@ class BitCounters {
   std::array<Word, kBlock> overflow_{};
 };
 
-/// Index of the lowest bit that is set in `word`, which is not 0.
+/// Returns the index of the lowest bit that is set in `word`, which is not 0.
 std::size_t lowest_bit(Word word) {
   static_assert(sizeof(Word) == sizeof(unsigned long long));
   return static_cast<std::size_t>(__builtin_ctzll(word));
@@ -62,13 +62,13 @@ std::size_t lowest_bit(Word word) {
 
 using BlockWords = std::array<Word, kBlock>;
 
-/// Bins by their numbers.
+/// Some of the bins of a histogram, by their numbers.
 struct BinList {
   std::array<std::uint8_t, kHistogramBins> bins{};
   std::size_t size = 0;
 };
 
-/// The bins for which `wanted` is true, without a branch, since none could be foreseen.
+/// Returns the bins for which `wanted` is true, without a branch, since none could be foreseen.
 template <class Wanted>
 BinList bins_where(Wanted&& wanted) {
   BinList list;
@@ -81,8 +81,8 @@ BinList bins_where(Wanted&& wanted) {
   return list;
 }
 
-/// What a target point must be like to be similar to a query point: bins below `too_high`, and the `high` bins not
-/// below `enough`. The others cannot be too low.
+/// What a target point must be like to be similar to a query point: its bins are below `too_high`, and those of them
+/// that are `high` in the query are not below `enough`. The others cannot be too low.
 struct WantedBins {
   std::array<std::uint8_t, kStoredBins> too_high{};
   std::array<std::uint8_t, kStoredBins> enough{};
@@ -100,9 +100,9 @@ struct WantedBins {
   }
 };
 
-/// The points of a block of which `highest` bins or fewer differ. `at_least` has the block's words for each bin and
-/// level. A bin can be too high only if it is among `peaks`: neighbours in the order of tangents have their few peaks
-/// in the same bins, so that most bins need no look.
+/// Returns the points of a block of which `highest` bins or fewer differ. `at_least` has the block's words for each bin
+/// and level. A bin can be too high only if it is among `peaks`: neighbours in the order of tangents have their few
+/// peaks in the same bins, so that most bins need no look.
 template <std::size_t kPlanes>
 BlockWords few_differences(const WantedBins& wanted, const Word* at_least, const BinList& peaks, unsigned highest) {
   const auto words = [&](std::size_t bin, std::size_t level) { return at_least + (bin * kLevels + level) * kBlock; };
@@ -122,7 +122,7 @@ BlockWords few_differences(const WantedBins& wanted, const Word* at_least, const
   return ones;
 }
 
-/// Bits [begin, end) of a word.
+/// Returns a word of which the bits [begin, end) are set.
 Word bits_between(std::size_t begin, std::size_t end) {
   return (~Word{0} << begin) & (~Word{0} >> (BitMatrix::kWordBits - end));
 }

@@ -137,16 +137,16 @@ TEST(MappingOptions, EveryNumberHasLimitsThatAreEnforcedOnBothSides) {
 TEST(MappingOptions, StrictPaperTurnsEveryReadingBack) {
   MappingOptions options;
   options.shape.points = ShapePoints::kResampled;
-  options.align.histogram.norm = HistogramNorm::kMaximum;
-  options.align.lcs.target = LcsTarget::kPerScan;
-  options.align.overlap.rule = OverlapRule::kNearest;
-  options.align.icp.gate = IcpGate::kFactor;
+  options.paper.histogram.norm = HistogramNorm::kMaximum;
+  options.paper.lcs.target = LcsTarget::kPerScan;
+  options.paper.overlap.rule = OverlapRule::kNearest;
+  options.paper.icp.gate = IcpGate::kFactor;
   make_strict_paper(options);
   EXPECT_EQ(options.shape.points, ShapePoints::kBeams);
-  EXPECT_EQ(options.align.histogram.norm, HistogramNorm::kCount);
-  EXPECT_EQ(options.align.lcs.target, LcsTarget::kConcatenated);
-  EXPECT_EQ(options.align.overlap.rule, OverlapRule::kAny);
-  EXPECT_EQ(options.align.icp.gate, IcpGate::kSlack);
+  EXPECT_EQ(options.paper.histogram.norm, HistogramNorm::kCount);
+  EXPECT_EQ(options.paper.lcs.target, LcsTarget::kConcatenated);
+  EXPECT_EQ(options.paper.overlap.rule, OverlapRule::kAny);
+  EXPECT_EQ(options.paper.icp.gate, IcpGate::kSlack);
 }
 
 }  // namespace

@@ -26,15 +26,20 @@ class Report : public testing::Test {
     result_.scans[0].component = 0;
     result_.scans[0].starts_component = true;
     result_.scans[1].component = 0;
-    result_.scans[1].match.status = MatchStatus::kOk;
-    result_.scans[1].match.ref_from_query = {1.0, 2.0, kPi / 2};
-    result_.scans[1].match.overlap = 77;
-    result_.scans[1].match.query_from_sweep = {Pose2{0.01, 0.0, 0.0}};
+    PaperAlignment& trusted = result_.scans[1].paper.emplace();
+    trusted.status = PaperStatus::kOk;
+    trusted.ref_from_query = {1.0, 2.0, kPi / 2};
+    trusted.shape_ref_from_query = {0.9, 2.0, kPi / 2};
+    trusted.overlap = 77;
+    trusted.overlap_ratio = 0.75;
+    trusted.query_from_sweep = {Pose2{0.01, 0.0, 0.0}};
     result_.scans[2].component = 1;
     result_.scans[2].starts_component = true;
     result_.scans[2].reason = "only 3 of 10";
-    result_.scans[2].match.status = MatchStatus::kTooFewCorrespondences;
-    result_.scans[2].match.ref_from_query = {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0};
+    PaperAlignment& refused = result_.scans[2].paper.emplace();
+    refused.status = PaperStatus::kTooFewCorrespondences;
+    refused.ref_from_query = {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0};
+    refused.shape_ref_from_query = {0.5, 0.0, 0.0};
     selection_.skip = 5;
     selection_.every = 2;
   }
@@ -74,13 +79,16 @@ TEST_F(Report, TellsWhatBecameOfEachPosition) {
   EXPECT_EQ(second["index_in_whole_log"], 7);
   EXPECT_EQ(second["alignment"]["status"], "ok");
   EXPECT_DOUBLE_EQ(second["alignment"]["ref_from_query"]["theta_deg"], 90.0);
+  EXPECT_EQ(second["alignment"]["shape_ref_from_query"]["x_m"], 0.9);
   EXPECT_EQ(second["alignment"]["overlap"], 77);
+  EXPECT_EQ(second["alignment"]["overlap_ratio"], 0.75);
   EXPECT_EQ(second["alignment"]["query_from_sub_scan"][0]["x_m"], 0.01);
   EXPECT_EQ(second["map_from_robot"]["y_m"], 2.0);
   const Json& third = report["positions"][2];
   EXPECT_EQ(third["alignment"]["status"], "too-few-correspondences");
   EXPECT_EQ(third["reason"], "only 3 of 10");
   EXPECT_TRUE(third["alignment"]["ref_from_query"].is_null());
+  EXPECT_TRUE(third["alignment"]["shape_ref_from_query"].is_null());
   EXPECT_TRUE(third["map_from_robot"].is_null());
 }
 
@@ -106,7 +114,9 @@ TEST_F(Report, OfThePapersMethodHasNoProbability) {
 }
 
 TEST_F(Report, TellsHowSureAPoseIsAndWhatElseItMightBe) {
+  result_.scans[1].paper.reset();
   ScanMatch& match = result_.scans[1].match;
+  match.ref_from_query = {1.0, 2.0, kPi / 2};
   for (const MatchStatus status : {MatchStatus::kOk, MatchStatus::kAmbiguous, MatchStatus::kDegenerate}) {
     match.status = status;
     match.probability = 0.75;
@@ -116,6 +126,7 @@ TEST_F(Report, TellsHowSureAPoseIsAndWhatElseItMightBe) {
     EXPECT_EQ(shown["status"], enum_name(status));
     EXPECT_EQ(shown["ref_from_query"]["x_m"], 1.0) << "a pose in doubt is a pose";
     EXPECT_TRUE(shown["shape_ref_from_query"].is_null());
+    EXPECT_EQ(shown["overlap_ratio"], 0.6) << "of the pose that was taken";
     EXPECT_EQ(shown["probability"], 0.75);
     EXPECT_EQ(shown["covariance"], Json::parse("[[1, 2, 3], [2, 5, 6], [3, 6, 9]]"));
     ASSERT_EQ(shown["ranked"].size(), 2U);
@@ -127,8 +138,14 @@ TEST_F(Report, TellsHowSureAPoseIsAndWhatElseItMightBe) {
 }
 
 TEST_F(Report, ShowsNoPoseWhereNoneIsTrusted) {
+  result_.scans[1].paper->status = PaperStatus::kTooLittleOverlap;
+  EXPECT_TRUE(parsed()["positions"][1]["alignment"]["ref_from_query"].is_null());
+  result_.scans[1].paper.reset();
   ScanMatch& match = result_.scans[1].match;
   match.status = MatchStatus::kTooLittleOverlap;
+  match.ref_from_query = {1.0, 2.0, kPi / 2};
+  match.reason = result_.scans[1].reason = "they share nothing";
+  EXPECT_EQ(parsed()["positions"][1]["alignment"]["status"], "too-little-overlap");
   EXPECT_TRUE(parsed()["positions"][1]["alignment"]["ref_from_query"].is_null());
 }
 

@@ -58,9 +58,9 @@ class TraceOfAWalk : public testing::Test {
 
 /// Compares the pairs that the file names with those of an alignment made anew, point by point.
 struct Comparison : TraceSink {
-  void on_alignment(const TracedAlignment& match) override {
-    all.push_back(match.steps.rotations.at(static_cast<std::size_t>(match.steps.best_rotation)));
-    targets.push_back(match.targets);
+  void on_alignment(const TracedAlignment& traced) override {
+    all.push_back(traced.steps.rotations.at(static_cast<std::size_t>(traced.steps.best_rotation)));
+    targets.push_back(traced.targets);
   }
   std::vector<RotationMatch> all;
   std::vector<std::vector<TracedTarget>> targets;
@@ -68,7 +68,7 @@ struct Comparison : TraceSink {
 
 TEST_F(TraceOfAWalk, NamesThePointsOfEachPair) {
   for (const LcsTarget target : {LcsTarget::kPerScan, LcsTarget::kConcatenated}) {
-    options_.align.lcs.target = target;
+    options_.paper.lcs.target = target;
     std::filesystem::remove(path());
     write(path());
     auto traced = records(path());

@@ -129,9 +129,14 @@ TEST(Motions, AreThoseBetweenPlacedPositionsAfterAZeroForTheFirst) {
 
   result.scans[2].match.covariance(0, 0) = std::numeric_limits<double>::quiet_NaN();
   result.scans[2].match.status = MatchStatus::kOk;
-  EXPECT_THROW(motions_of(result), ConfigError) << "as by the paper's method";
-  result.scans[2].match.status = MatchStatus::kNoCorrespondences;
+  EXPECT_THROW(motions_of(result), ConfigError);
+  result.scans[2].match.status = MatchStatus::kNoCandidates;
   EXPECT_EQ(motions_of(result)[1].covariance, Eigen::Matrix3d::Identity()) << "loops alone put it there";
+
+  result.scans[2].paper.emplace().status = PaperStatus::kOk;
+  EXPECT_THROW(motions_of(result), ConfigError) << "the paper's method knows no covariances";
+  result.scans[2].paper->status = PaperStatus::kNoCorrespondences;
+  EXPECT_EQ(motions_of(result)[1].covariance, Eigen::Matrix3d::Identity());
 }
 
 /// A keyframe and two scans that are aligned to it.

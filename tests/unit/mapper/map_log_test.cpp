@@ -7,6 +7,7 @@
 #include <random>
 
 #include "shapemap/core/errors.hpp"
+#include "shapemap/paper/paper_align.hpp"
 #include "support/matchers.hpp"
 #include "support/synthetic_world.hpp"
 
@@ -105,14 +106,14 @@ TEST(MapLog, FollowsAKnownWalk) {
 TEST(MapLog, LooksBackNoFartherThanTheTargetScans) {
   const Log log = log_of(test::cluttered_room(3), walk(4));
   MappingOptions options = test::paper_options();
-  options.align.target.target_scans = 1;
+  options.paper.target.target_scans = 1;
   const MapResult result = mapped(log, options);
   ASSERT_EQ(result.placed().size(), 4U);
   for (std::size_t i = 1; i < 4; ++i) {
-    const ScanMatch pair =
-        align(test::shape_of(log.scans[i - 1], options), test::shape_of(log.scans[i], options), options.align);
-    EXPECT_THAT(result.scans[i].match.ref_from_query, IsNearPose(pair.ref_from_query, 1e-9, 1e-9)) << i;
-    EXPECT_EQ(result.scans[i].match.overlap, pair.overlap) << i;
+    const PaperAlignment pair =
+        paper_align(test::shape_of(log.scans[i - 1], options), test::shape_of(log.scans[i], options), options.paper);
+    EXPECT_THAT(result.scans[i].paper->ref_from_query, IsNearPose(pair.ref_from_query, 1e-9, 1e-9)) << i;
+    EXPECT_EQ(result.scans[i].paper->overlap, pair.overlap) << i;
   }
 }
 
@@ -121,8 +122,8 @@ TEST(MapLog, PosesAreTheAlignmentsInARow) {
   ASSERT_EQ(result.placed().size(), 6U);
   Pose2 map_from_robot;
   for (std::size_t i = 1; i < 6; ++i) {
-    ASSERT_TRUE(result.scans[i].match.ok());
-    map_from_robot = map_from_robot * result.scans[i].match.ref_from_query;
+    ASSERT_TRUE(result.scans[i].paper && result.scans[i].paper->ok());
+    map_from_robot = map_from_robot * result.scans[i].paper->ref_from_query;
     EXPECT_THAT(result.placed()[i].map_from_robot, IsNearPose(map_from_robot, 1e-12, 1e-12)) << i;
   }
 }
@@ -132,7 +133,8 @@ TEST(MapLog, APositionWithoutReturnsIsInNoFragmentAndTheNextStartsOne) {
   log.scans.insert(log.scans.begin() + 2, blind());
   const MapResult result = mapped(log);
   EXPECT_THAT(components_of(result), ElementsAre(0, 0, -1, 1, 1));
-  EXPECT_EQ(result.scans[2].match.status, MatchStatus::kNoShape);
+  ASSERT_TRUE(result.scans[2].paper);
+  EXPECT_EQ(result.scans[2].paper->status, PaperStatus::kNoShape);
   EXPECT_EQ(result.scans[2].reason, "only 0 shape points, 10 are needed");
   EXPECT_FALSE(result.scans[2].starts_component);
   EXPECT_TRUE(result.scans[3].starts_component);
@@ -152,11 +154,12 @@ TEST(MapLog, OfBlindPositionsIsNoMapButAReportOfEach) {
 
 TEST(MapLog, APositionThatIsNotTrustedStartsAFragmentAndSaysWhy) {
   MappingOptions options = test::paper_options();
-  options.align.trust.min_correspondences = 100000;
+  options.paper.trust.min_correspondences = 100000;
   const MapResult result = mapped(log_of(test::cluttered_room(2), walk(3)), options);
   EXPECT_THAT(components_of(result), ElementsAre(0, 1, 2));
-  EXPECT_EQ(result.scans[1].match.status, MatchStatus::kTooFewCorrespondences);
-  EXPECT_EQ(result.scans[1].reason, result.scans[1].match.reason);
+  ASSERT_TRUE(result.scans[1].paper);
+  EXPECT_EQ(result.scans[1].paper->status, PaperStatus::kTooFewCorrespondences);
+  EXPECT_EQ(result.scans[1].reason, result.scans[1].paper->reason);
   EXPECT_FALSE(result.scans[1].reason.empty());
   EXPECT_TRUE(result.scans[0].reason.empty());
 }
@@ -227,7 +230,7 @@ TEST(MapLog, EveryPositionHasACorrectionPerSubScan) {
   const Log log = log_of(test::cluttered_room(2), walk(3), four_sweeps());
   for (const bool decoupled : {false, true}) {
     MappingOptions options = test::paper_options();
-    options.align.icp.decoupled = decoupled;
+    options.paper.icp.decoupled = decoupled;
     const MapResult result = mapped(log, options);
     ASSERT_EQ(result.placed().size(), 3U);
     for (const PlacedScan& placed : result.placed()) ASSERT_EQ(placed.robot_from_sweep.size(), 4U);
@@ -242,7 +245,7 @@ TEST(MapLog, EveryPositionHasACorrectionPerSubScan) {
 TEST(MapLog, IsTheSameToTheBitForAnyNumberOfThreads) {
   const Log log = log_of(test::cluttered_room(4), walk(4), four_sweeps());
   MappingOptions options = test::paper_options();
-  options.align.icp.decoupled = true;
+  options.paper.icp.decoupled = true;
   options.run.threads = 1;
   const MapResult one = mapped(log, options);
   options.run.threads = 4;
@@ -270,7 +273,7 @@ TEST(MapLog, NeverLooksAtTheReferencePoses) {
 
 TEST(MapLog, BadOptionsAreRefusedBeforeAnythingIsDone) {
   MappingOptions options = test::paper_options();
-  options.align.target.target_scans = 0;
+  options.paper.target.target_scans = 0;
   Watcher watcher(100);
   EXPECT_THROW(map_log(log_of(test::uneven_room(), walk(1)), options, watcher), ConfigError);
   EXPECT_EQ(watcher.asked, 0U);

@@ -49,7 +49,7 @@ struct Recorder : TraceSink {
     num_points.push_back(points.size());
   }
   void on_alignment(const TracedAlignment& shown) override {
-    matches.push_back(shown.match);
+    alignments.push_back(shown.alignment);
     steps.push_back(shown.steps);
     targets.push_back(shown.targets);
     queries.push_back(shown.query_index);
@@ -60,8 +60,8 @@ struct Recorder : TraceSink {
   void on_choice(const TracedChoice& choice) override { choices.push_back(choice); }
 
   std::vector<std::size_t> indices, num_points, queries;
-  std::vector<ScanMatch> matches;
-  std::vector<AlignTrace> steps;
+  std::vector<PaperAlignment> alignments;
+  std::vector<PaperTrace> steps;
   std::vector<std::vector<TracedTarget>> targets;
   std::vector<Edge> edges;
   std::vector<TracedChoice> choices;
@@ -98,15 +98,15 @@ TEST(TraceSink, SeesEachAlignmentOfThePapersMethodWithItsTargets) {
   EXPECT_TRUE(recorder.edges.empty());
   EXPECT_THAT(recorder.queries, ElementsAre(1, 2, 5));  // 4 has nothing before it
   for (std::size_t k = 0; k < recorder.queries.size(); ++k) {
-    const ScanMatch& match = recorder.matches[k];
-    const AlignTrace& steps = recorder.steps[k];
-    EXPECT_THAT(match.ref_from_query, HasSameBits(result.scans[recorder.queries[k]].match.ref_from_query));
+    const PaperAlignment& alignment = recorder.alignments[k];
+    const PaperTrace& steps = recorder.steps[k];
+    EXPECT_THAT(alignment.ref_from_query, HasSameBits(result.scans[recorder.queries[k]].paper->ref_from_query));
     ASSERT_GE(steps.best_rotation, 0);
     const RotationMatch& best = steps.rotations[static_cast<std::size_t>(steps.best_rotation)];
-    EXPECT_THAT(best.target_from_query(), HasSameBits(match.shape_ref_from_query));
+    EXPECT_THAT(best.target_from_query(), HasSameBits(alignment.shape_ref_from_query));
     EXPECT_GE(best.lcs.size(), best.spread.size());
-    EXPECT_EQ(best.translation.kept.size(), static_cast<std::size_t>(match.num_correspondences));
-    EXPECT_THAT(steps.icp.steps.back(), HasSameBits(match.icp_ref_from_query));
+    EXPECT_EQ(best.translation.kept.size(), static_cast<std::size_t>(alignment.num_correspondences));
+    EXPECT_THAT(steps.icp.steps.back(), HasSameBits(alignment.icp_ref_from_query));
   }
   ASSERT_EQ(recorder.targets[1].size(), 2U);
   EXPECT_EQ(recorder.targets[1][0].scan_index, 0U);
@@ -118,7 +118,7 @@ TEST(TraceSink, SeesEachAlignmentOfThePapersMethodWithItsTargets) {
 TEST(TraceSink, SeesWhatTheRobustMethodChoosesFrom) {
   Recorder recorder;
   const MapResult result = mapped(walk_with_a_blind_scan(), Method::kRobust, &recorder);
-  EXPECT_TRUE(recorder.matches.empty());
+  EXPECT_TRUE(recorder.alignments.empty());
   ASSERT_EQ(recorder.edges.size(), 4U);
   ASSERT_EQ(recorder.choices.size(), 4U);
   EXPECT_EQ(recorder.edges[2].reference, 2U);  // across the blind one

@@ -83,7 +83,7 @@ TEST(RobustAlign, SaysWhyThereIsNoPose) {
   const ScanView room = test::view_from(test::cluttered_room(1), {});
   for (const ScanMatch& match :
        {match_scans(nothing, room, {}), match_scans(room, nothing, {}), match_scans(nothing, nothing, {})}) {
-    EXPECT_EQ(match.status, MatchStatus::kNoCorrespondences);
+    EXPECT_EQ(match.status, MatchStatus::kNoCandidates);
     EXPECT_FALSE(match.has_pose());
     EXPECT_THAT(match.ref_from_query, IsNanPose());
     EXPECT_FALSE(match.reason.empty());
@@ -227,7 +227,7 @@ TEST(Judged, GivesEachVerdictForItsReason) {
   const std::vector<MatchCandidate> good{good_candidate({1, 0, 0}, 4.0)};
   EXPECT_EQ(judged(good, 0, kFullMargin, {1.0, 0.0, 10.0}).status, MatchStatus::kAmbiguous);
   EXPECT_EQ(judged(good, 0, kFullMargin, {0.0, 0.95, 10.0}).status, MatchStatus::kTooLittleOverlap);
-  EXPECT_EQ(judged({}, 0, 0.0, {}).status, MatchStatus::kNoCorrespondences);
+  EXPECT_EQ(judged({}, 0, 0.0, {}).status, MatchStatus::kNoCandidates);
   std::vector<MatchCandidate> sliding = good;
   sliding[0].fit.information(0, 0) = 0.0;
   EXPECT_EQ(judged(sliding, 0, kFullMargin, {0.0, 0.0, 0.5}).status, MatchStatus::kDegenerate);

@@ -84,7 +84,7 @@ TEST(Icp, ConvergesFromFiveCentimetresAndTwoDegrees) {
     const double turn_rad = (seed % 2 == 0 ? 2 : -2) * kDegree;
     const Pose2& truth = views.target_from_query;
     const Pose2 start{truth.x_m + off.x(), truth.y_m + off.y(), truth.theta_rad + turn_rad};
-    const IcpResult result = icp(views.target, views.query, start, kMeanDistance_m, kWholeScan, kOverlap);
+    const IcpResult result = icp(views.target, views.query, {start, kMeanDistance_m}, kWholeScan, kOverlap);
     EXPECT_THAT(result.target_from_query, IsNearPose(truth, 0.02, 0.4 * kDegree)) << seed;
     EXPECT_GT(result.iterations, 0);
   }
@@ -95,7 +95,7 @@ TEST(Icp, StaysAtTheTruthOfTwoIdenticalScans) {
   for (const IcpGate gate : {IcpGate::kFactor, IcpGate::kSlack}) {
     IcpOptions options = kWholeScan;
     options.gate = gate;
-    const IcpResult result = icp(map_of(shape), shape, {}, 0.0, options, kOverlap);
+    const IcpResult result = icp(map_of(shape), shape, {}, options, kOverlap);
     EXPECT_THAT(result.target_from_query, IsNearPose(Pose2{}, 1e-9, 1e-9));
     EXPECT_EQ(result.overlap.num_points, static_cast<int>(shape.size()));
   }
@@ -106,7 +106,7 @@ TEST(Icp, WithoutIterationsIsTheStart) {
   const Pose2 start{0.3, -0.1, 0.02};
   IcpOptions options = kWholeScan;
   options.max_iterations = 0;
-  const IcpResult result = icp(views.target, views.query, start, kMeanDistance_m, options, kOverlap);
+  const IcpResult result = icp(views.target, views.query, {start, kMeanDistance_m}, options, kOverlap);
   EXPECT_THAT(result.target_from_query, HasSameBits(start));
   EXPECT_EQ(result.iterations, 0);
   EXPECT_EQ(result.steps.size(), 1U);
@@ -116,7 +116,7 @@ TEST(Icp, WithoutIterationsIsTheStart) {
 TEST(Icp, FarFromEverythingIsTheStart) {
   const TwoViews views = two_views(2);
   const Pose2 start{100.0, 0.0, 0.0};
-  const IcpResult result = icp(views.target, views.query, start, kMeanDistance_m, kWholeScan, kOverlap);
+  const IcpResult result = icp(views.target, views.query, {start, kMeanDistance_m}, kWholeScan, kOverlap);
   EXPECT_THAT(result.target_from_query, HasSameBits(start));
   EXPECT_EQ(result.overlap.num_points, 0);
 }
@@ -126,13 +126,13 @@ TEST(Icp, NeverKeepsAStepThatOverlapsLessAtALargerDistance) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const TwoViews views = two_views(seed);
     const Pose2 start{0.25 - 0.02 * seed, 0.02 * seed, 3 * kDegree};
-    const IcpResult result = icp(views.target, views.query, start, kMeanDistance_m, kWholeScan, kOverlap);
+    const IcpResult result = icp(views.target, views.query, {start, kMeanDistance_m}, kWholeScan, kOverlap);
     ASSERT_EQ(result.steps.size(), static_cast<std::size_t>(result.iterations) + 1);
     EXPECT_THAT(result.steps.front(), HasSameBits(start));
     EXPECT_THAT(result.steps.back(), HasSameBits(result.target_from_query));
     // The limit that the overlap of all steps is measured with.
     const auto overlap_at = [&](const Pose2& pose, double limit_m) {
-      return scan_overlap(partners_within(views.target, views.query, pose, limit_m, kOverlap));
+      return scan_overlap(partners_within(views.target, views.query, pose, {limit_m}, kOverlap));
     };
     const double limit_m = overlap_at(start, kMeanDistance_m + 0.40).mean_distance_m + 0.40;
     ScanOverlap before = overlap_at(start, limit_m);
@@ -166,13 +166,13 @@ TEST(Icp, RollsBackAStepThatLosesPartnersAndMovesTheOthersAway) {
   const OverlapOptions overlap_options{0.20, 10 * kDegree, OverlapRule::kNearest};
   const double limit_m = scan_overlap(all).mean_distance_m + 0.20;
   const ScanOverlap after =
-      scan_overlap(partners_within(map, query, fit_pose(map, query, all), limit_m, overlap_options));
+      scan_overlap(partners_within(map, query, fit_pose(map, query, all), {limit_m}, overlap_options));
   ASSERT_LT(after.num_points, 27);
   ASSERT_GT(after.mean_distance_m, scan_overlap(all).mean_distance_m);
 
   IcpOptions options = kWholeScan;
   options.gate = IcpGate::kSlack;
-  const IcpResult result = icp(map, query, {}, 0.06, options, overlap_options);
+  const IcpResult result = icp(map, query, {{}, 0.06}, options, overlap_options);
   EXPECT_THAT(result.target_from_query, HasSameBits(Pose2{}));
   EXPECT_EQ(result.iterations, 0);
   EXPECT_EQ(result.steps.size(), 1U);
@@ -184,7 +184,7 @@ TEST(Icp, KeepsAtMostTheIterationsAskedFor) {
   IcpOptions options = kWholeScan;
   for (const int limit : {1, 2, 3}) {
     options.max_iterations = limit;
-    const IcpResult result = icp(views.target, views.query, {0.15, 0.0, 0.0}, kMeanDistance_m, options, kOverlap);
+    const IcpResult result = icp(views.target, views.query, {{0.15, 0.0, 0.0}, kMeanDistance_m}, options, kOverlap);
     EXPECT_LE(result.iterations, limit);
     EXPECT_GT(result.iterations, 0);
   }
@@ -229,7 +229,7 @@ TEST(DecoupledIcp, FindsASubScanThatIsTurnedByOneDegree) {
     const Pose2 error{0.0, 0.0, 1 * kDegree};
     const TurnedSweep scans = turned_sweep(s, error, 0.01);
     const std::vector<Pose2> found =
-        decoupled_icp(map_of(scans.right), scans.wrong, {}, kMeanDistance_m, kWholeScan, kOverlap);
+        decoupled_icp(map_of(scans.right), scans.wrong, {{}, kMeanDistance_m}, kWholeScan, kOverlap);
     ASSERT_EQ(found.size(), 4U);
     for (int k = 0; k < 4; ++k) {
       const Pose2 expected = k == s ? inverse(error) : Pose2{};
@@ -243,7 +243,7 @@ TEST(DecoupledIcp, BringsATurnedSubScanBackTowardsTheWallsAtAnySpacing) {
     for (int s = 0; s < 4; ++s) {
       const TurnedSweep scans = turned_sweep(s, {0.0, 0.0, 1 * kDegree}, spacing_m);
       const std::vector<Pose2> found =
-          decoupled_icp(map_of(scans.right), scans.wrong, {}, kMeanDistance_m, kWholeScan, kOverlap);
+          decoupled_icp(map_of(scans.right), scans.wrong, {{}, kMeanDistance_m}, kWholeScan, kOverlap);
       const double before_m = off_the_walls_m(scans.world, scans.wrong, s);
       const double after_m = off_the_walls_m(scans.world, moved(scans.wrong, {}, found), s);
       EXPECT_GT(before_m, 0.02);
@@ -256,16 +256,16 @@ TEST(DecoupledIcp, CorrectionsAreInTheFrameOfTheQuery) {
   const TurnedSweep scans = turned_sweep(1, {0.0, 0.0, 1 * kDegree});
   const Pose2 map_from_query{3.0, -2.0, 2.0};
   const std::vector<Pose2> here =
-      decoupled_icp(map_of(scans.right), scans.wrong, {}, kMeanDistance_m, kWholeScan, kOverlap);
+      decoupled_icp(map_of(scans.right), scans.wrong, {{}, kMeanDistance_m}, kWholeScan, kOverlap);
   const std::vector<Pose2> there = decoupled_icp(map_of(moved(scans.right, map_from_query)), scans.wrong,
-                                                 map_from_query, kMeanDistance_m, kWholeScan, kOverlap);
+                                                 {map_from_query, kMeanDistance_m}, kWholeScan, kOverlap);
   for (std::size_t s = 0; s < 4; ++s) EXPECT_THAT(there[s], IsNearPose(here[s], 1e-3, 0.05 * kDegree)) << s;
 }
 
 TEST(DecoupledIcp, LeavesAScanOfOneSubScanAlone) {
   const TwoViews views = two_views(4);
   const std::vector<Pose2> found =
-      decoupled_icp(views.target, views.query, {0.2, -0.1, 0.0}, kMeanDistance_m, kWholeScan, kOverlap);
+      decoupled_icp(views.target, views.query, {{0.2, -0.1, 0.0}, kMeanDistance_m}, kWholeScan, kOverlap);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_THAT(found[0], HasSameBits(Pose2{}));
 }
@@ -273,7 +273,7 @@ TEST(DecoupledIcp, LeavesAScanOfOneSubScanAlone) {
 TEST(DecoupledIcp, LeavesASubScanAloneThatNothingPulls) {
   TurnedSweep scans = turned_sweep(2, {50.0, 0.0, 0.0});
   const std::vector<Pose2> found =
-      decoupled_icp(map_of(scans.right), scans.wrong, {}, kMeanDistance_m, kWholeScan, kOverlap);
+      decoupled_icp(map_of(scans.right), scans.wrong, {{}, kMeanDistance_m}, kWholeScan, kOverlap);
   ASSERT_EQ(found.size(), 4U);
   EXPECT_THAT(found[2], IsNearPose(Pose2{}, 1e-12, 1e-12));
 }

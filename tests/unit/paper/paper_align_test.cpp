@@ -17,7 +17,7 @@ using test::IsNearPose;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-AlignOptions options_for_test() { return test::paper_options().align; }
+PaperOptions options_for_test() { return test::paper_options().paper; }
 
 std::vector<int> grid_in_degrees(double range_deg, double step_deg) {
   std::vector<int> degrees;
@@ -67,62 +67,62 @@ TwoViews two_views(unsigned seed, double turn_deg, double distance_m) {
           test::shape_from(room, world_from_ref * ref_from_query, scanner, seed + 1), ref_from_query};
 }
 
-class AlignSeeds : public ::testing::TestWithParam<unsigned> {};
+class PaperAlignSeeds : public ::testing::TestWithParam<unsigned> {};
 
-TEST_P(AlignSeeds, FindsAKnownMotionInAClutteredRoom) {
+TEST_P(PaperAlignSeeds, FindsAKnownMotionInAClutteredRoom) {
   const unsigned seed = GetParam();
   std::mt19937 rng(seed);
   const double turn_deg = std::uniform_real_distribution<double>(-2.0, 2.0)(rng);
   const TwoViews views = two_views(seed, turn_deg, 0.5);
-  const ScanMatch found = align(views.reference, views.query, options_for_test());
+  const PaperAlignment found = paper_align(views.reference, views.query, options_for_test());
   ASSERT_TRUE(found.ok()) << found.reason;
   EXPECT_THAT(found.ref_from_query, IsNearPose(views.ref_from_query, 0.05, 1 * kDegree));
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, AlignSeeds, ::testing::Range(0U, 50U));
+INSTANTIATE_TEST_SUITE_P(Seeds, PaperAlignSeeds, ::testing::Range(0U, 50U));
 
-TEST(Align, FindsALargeTurnWithAWideGrid) {
-  AlignOptions options = options_for_test();
+TEST(PaperAlign, FindsALargeTurnWithAWideGrid) {
+  PaperOptions options = options_for_test();
   options.rotation = {60 * kDegree, 2 * kDegree};
   for (const unsigned seed : {1U, 2U, 3U}) {
     const TwoViews views = two_views(seed, 40.0, 0.3);
-    const ScanMatch found = align(views.reference, views.query, options);
+    const PaperAlignment found = paper_align(views.reference, views.query, options);
     ASSERT_TRUE(found.ok()) << found.reason;
     EXPECT_THAT(found.ref_from_query, IsNearPose(views.ref_from_query, 0.05, 1 * kDegree)) << seed;
     EXPECT_NEAR(found.rotation_rad, 40 * kDegree, 4.1 * kDegree);
   }
 }
 
-TEST(Align, FindsTheMotionWithThePapersLiteralReadingsToo) {
+TEST(PaperAlign, FindsTheMotionWithThePapersLiteralReadingsToo) {
   MappingOptions strict = test::paper_options();
   make_strict_paper(strict);
   const test::World room = test::cluttered_room(5);
   const Pose2 motion{0.2, 0.1, 1 * kDegree};
   const Shape reference = test::shape_of(test::scan_of(room, {}), strict);
   const Shape query = test::shape_of(test::scan_of(room, motion), strict);
-  const ScanMatch found = align(reference, query, strict.align);
+  const PaperAlignment found = paper_align(reference, query, strict.paper);
   ASSERT_TRUE(found.ok()) << found.reason;
   EXPECT_THAT(found.ref_from_query, IsNearPose(motion, 0.10, 1.5 * kDegree));
 }
 
-TEST(Align, TwoIdenticalScansAreAtTheSamePlace) {
+TEST(PaperAlign, TwoIdenticalScansAreAtTheSamePlace) {
   const Shape shape = test::shape_from(test::cluttered_room(1), {});
-  const ScanMatch found = align(shape, shape, options_for_test());
+  const PaperAlignment found = paper_align(shape, shape, options_for_test());
   ASSERT_TRUE(found.ok()) << found.reason;
   EXPECT_THAT(found.ref_from_query, IsNearPose(Pose2{}, 1e-6, 1e-6));
   EXPECT_EQ(found.overlap_ratio, 1.0);
 }
 
-TEST(Align, WithoutShapeIsRefusedWithTheNumbers) {
+TEST(PaperAlign, WithoutShapeIsRefusedWithTheNumbers) {
   const Shape shape = test::shape_from(test::uneven_room(), {});
   Shape few = shape;
   few.points.resize(9);
   for (const auto& [reference, query] : {std::pair{few, shape}, {shape, few}, {Shape{}, Shape{}}}) {
-    AlignTrace trace;
+    PaperTrace trace;
     trace.best_rotation = 2;
     trace.rotations.resize(5);
-    const ScanMatch refused = align(reference, query, options_for_test(), &trace);
-    EXPECT_EQ(refused.status, MatchStatus::kNoShape);
+    const PaperAlignment refused = paper_align(reference, query, options_for_test(), {}, &trace);
+    EXPECT_EQ(refused.status, PaperStatus::kNoShape);
     EXPECT_EQ(trace.best_rotation, -1) << "nothing is left of an earlier alignment";
     EXPECT_TRUE(trace.rotations.empty());
     EXPECT_THAT(refused.reason, HasSubstr("10 are needed"));
@@ -138,43 +138,43 @@ Shape row(double tangent_rad) {
   return shape;
 }
 
-TEST(Align, WithoutSimilarTangentsIsRefused) {
-  AlignTrace trace;
-  const ScanMatch refused = align(row(0.0), row(kPi / 2), options_for_test(), &trace);
-  EXPECT_EQ(refused.status, MatchStatus::kNoCorrespondences);
+TEST(PaperAlign, WithoutSimilarTangentsIsRefused) {
+  PaperTrace trace;
+  const PaperAlignment refused = paper_align(row(0.0), row(kPi / 2), options_for_test(), {}, &trace);
+  EXPECT_EQ(refused.status, PaperStatus::kNoCorrespondences);
   EXPECT_FALSE(refused.reason.empty());
   EXPECT_THAT(refused.ref_from_query, IsNanPose());
   EXPECT_EQ(trace.best_rotation, -1);
   EXPECT_EQ(trace.rotations.size(), 5U);
 }
 
-TEST(Align, WithFewerCorrespondencesThanAskedForIsRefused) {
+TEST(PaperAlign, WithFewerCorrespondencesThanAskedForIsRefused) {
   const Shape shape = test::shape_from(test::cluttered_room(1), {});
-  AlignOptions options = options_for_test();
+  PaperOptions options = options_for_test();
   options.trust.min_correspondences = static_cast<int>(shape.size()) + 1;
-  const ScanMatch refused = align(shape, shape, options);
-  EXPECT_EQ(refused.status, MatchStatus::kTooFewCorrespondences);
+  const PaperAlignment refused = paper_align(shape, shape, options);
+  EXPECT_EQ(refused.status, PaperStatus::kTooFewCorrespondences);
   EXPECT_THAT(refused.reason, HasSubstr(std::to_string(options.trust.min_correspondences) + " are needed"));
   EXPECT_THAT(refused.ref_from_query, IsNanPose());
 }
 
-TEST(Align, WithLessOverlapThanAskedForIsRefused) {
+TEST(PaperAlign, WithLessOverlapThanAskedForIsRefused) {
   const TwoViews views = two_views(2, 1.0, 0.5);
-  AlignOptions options = options_for_test();
+  PaperOptions options = options_for_test();
   options.trust.min_overlap_ratio = 1.0;
-  const ScanMatch refused = align(views.reference, views.query, options);
-  EXPECT_EQ(refused.status, MatchStatus::kTooLittleOverlap);
+  const PaperAlignment refused = paper_align(views.reference, views.query, options);
+  EXPECT_EQ(refused.status, PaperStatus::kTooLittleOverlap);
   EXPECT_THAT(refused.reason, HasSubstr("1 is needed"));
   EXPECT_THAT(refused.ref_from_query, IsNanPose());
   EXPECT_FALSE(std::isnan(refused.icp_ref_from_query.x_m));  // what was refused can be looked at
 }
 
-TEST(ScanMatch, HasNoPoseBeforeThereIsAResult) {
-  EXPECT_FALSE(ScanMatch{}.ok());
-  EXPECT_THAT(ScanMatch{}.ref_from_query, IsNanPose());
+TEST(PaperAlignment, HasNoPoseBeforeThereIsAResult) {
+  EXPECT_FALSE(PaperAlignment{}.ok());
+  EXPECT_THAT(PaperAlignment{}.ref_from_query, IsNanPose());
 }
 
-void expect_same_bits(const ScanMatch& a, const ScanMatch& b) {
+void expect_same_bits(const PaperAlignment& a, const PaperAlignment& b) {
   EXPECT_EQ(a.status, b.status);
   EXPECT_THAT(a.ref_from_query, HasSameBits(b.ref_from_query));
   EXPECT_THAT(a.shape_ref_from_query, HasSameBits(b.shape_ref_from_query));
@@ -187,30 +187,28 @@ void expect_same_bits(const ScanMatch& a, const ScanMatch& b) {
   }
 }
 
-TEST(Align, IsTheSameToTheBitForAnyNumberOfThreads) {
+TEST(PaperAlign, IsTheSameToTheBitForAnyNumberOfThreads) {
   const TwoViews views = two_views(3, -1.5, 0.5);
-  AlignOptions options = options_for_test();
+  PaperOptions options = options_for_test();
   options.rotation = {6 * kDegree, 1 * kDegree};
   options.icp.decoupled = true;
-  options.threads = 1;
-  const ScanMatch one = align(views.reference, views.query, options);
+  const PaperAlignment one = paper_align(views.reference, views.query, options, {1});
   for (const int threads : {2, 4, 32}) {
-    options.threads = threads;
-    expect_same_bits(align(views.reference, views.query, options), one);
+    expect_same_bits(paper_align(views.reference, views.query, options, {threads}), one);
   }
 }
 
-TEST(Align, IsTheSameToTheBitWithATraceAndWithout) {
+TEST(PaperAlign, IsTheSameToTheBitWithATraceAndWithout) {
   const TwoViews views = two_views(4, 0.7, 0.5);
-  AlignTrace trace;
-  expect_same_bits(align(views.reference, views.query, options_for_test(), &trace),
-                   align(views.reference, views.query, options_for_test()));
+  PaperTrace trace;
+  expect_same_bits(paper_align(views.reference, views.query, options_for_test(), {}, &trace),
+                   paper_align(views.reference, views.query, options_for_test()));
 }
 
-TEST(Align, TraceIsWhatLedToTheResult) {
+TEST(PaperAlign, TraceIsWhatLedToTheResult) {
   const TwoViews views = two_views(6, 0.7, 0.5);
-  AlignTrace trace;
-  const ScanMatch found = align(views.reference, views.query, options_for_test(), &trace);
+  PaperTrace trace;
+  const PaperAlignment found = paper_align(views.reference, views.query, options_for_test(), {}, &trace);
   ASSERT_TRUE(found.ok()) << found.reason;
   ASSERT_EQ(trace.rotations.size(), 5U);
   ASSERT_GE(trace.best_rotation, 0);
@@ -232,10 +230,10 @@ TEST(Align, TraceIsWhatLedToTheResult) {
   }
 }
 
-TEST(Align, CorrespondencesOfTheTraceAreShapePoints) {
+TEST(PaperAlign, CorrespondencesOfTheTraceAreShapePoints) {
   const TwoViews views = two_views(7, 1.0, 0.5);
-  AlignTrace trace;
-  align(views.reference, views.query, options_for_test(), &trace);
+  PaperTrace trace;
+  paper_align(views.reference, views.query, options_for_test(), {}, &trace);
   for (const RotationMatch& match : trace.rotations) {
     for (const Correspondence& c : match.lcs) {
       const ShapePoint& query = views.query.points.at(c.indices.query);
@@ -246,7 +244,7 @@ TEST(Align, CorrespondencesOfTheTraceAreShapePoints) {
   }
 }
 
-TEST(Align, DecoupledIcpIsLeftOutOnRequest) {
+TEST(PaperAlign, DecoupledIcpIsLeftOutOnRequest) {
   test::Scanner scanner;
   scanner.num_sweeps = 4;
   scanner.num_beams = 200;
@@ -254,13 +252,13 @@ TEST(Align, DecoupledIcpIsLeftOutOnRequest) {
   const test::World room = test::cluttered_room(8);
   const Shape reference = test::shape_from(room, {}, scanner);
   const Shape query = test::shape_from(room, {0.3, 0.1, 0.01}, scanner);
-  AlignOptions options = options_for_test();
+  PaperOptions options = options_for_test();
   options.icp.decoupled = false;
-  const ScanMatch without = align(reference, query, options);
+  const PaperAlignment without = paper_align(reference, query, options);
   ASSERT_EQ(without.query_from_sweep.size(), 4U);
   for (const Pose2& correction : without.query_from_sweep) EXPECT_THAT(correction, HasSameBits(Pose2{}));
   options.icp.decoupled = true;
-  EXPECT_EQ(align(reference, query, options).query_from_sweep.size(), 4U);
+  EXPECT_EQ(paper_align(reference, query, options).query_from_sweep.size(), 4U);
 }
 
 }  // namespace

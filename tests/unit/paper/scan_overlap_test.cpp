@@ -18,8 +18,8 @@ Shape query_of(const std::vector<ShapePoint>& points) { return {points, 1}; }
 TEST(PartnersWithin, RulesDifferWhereTheNearestPointHasAnotherTangent) {
   const PartialMap target = map_of({{{0.1, 0.0}, 90 * kDegree, 0}, {{0.3, 0.0}, 0.0, 0}});
   const Shape query = query_of({{{0.0, 0.0}, 0.0, 0}});
-  EXPECT_TRUE(partners_within(target, query, {}, 0.4, with_rule(OverlapRule::kNearest)).empty());
-  const std::vector<Partner> any = partners_within(target, query, {}, 0.4, with_rule(OverlapRule::kAny));
+  EXPECT_TRUE(partners_within(target, query, {}, {0.4}, with_rule(OverlapRule::kNearest)).empty());
+  const std::vector<Partner> any = partners_within(target, query, {}, {0.4}, with_rule(OverlapRule::kAny));
   ASSERT_EQ(any.size(), 1U);
   EXPECT_EQ(any[0].target, 1U);
   EXPECT_DOUBLE_EQ(any[0].distance_m, 0.3);
@@ -29,7 +29,7 @@ TEST(PartnersWithin, RulesAgreeWhereTheNearestPointIsSimilar) {
   const PartialMap target = map_of({{{0.3, 0.0}, 0.0, 0}, {{0.1, 0.0}, 5 * kDegree, 0}});
   const Shape query = query_of({{{5.0, 5.0}, 0.0, 0}, {{0.0, 0.0}, 0.0, 0}});
   for (const OverlapRule rule : {OverlapRule::kNearest, OverlapRule::kAny}) {
-    const std::vector<Partner> partners = partners_within(target, query, {}, 0.4, with_rule(rule));
+    const std::vector<Partner> partners = partners_within(target, query, {}, {0.4}, with_rule(rule));
     ASSERT_EQ(partners.size(), 1U);
     EXPECT_EQ(partners[0].query, 1U);
     EXPECT_EQ(partners[0].target, 1U);
@@ -41,8 +41,8 @@ TEST(PartnersWithin, ThePoseMovesPointsAndTurnsTangents) {
   const PartialMap target = map_of({{{2.0, 1.0}, 90 * kDegree, 0}});
   const Shape query = query_of({{{1.0, 0.0}, 0.0, 0}});
   for (const OverlapRule rule : {OverlapRule::kNearest, OverlapRule::kAny}) {
-    EXPECT_EQ(partners_within(target, query, {2.0, 0.0, 90 * kDegree}, 1e-9, with_rule(rule)).size(), 1U);
-    EXPECT_TRUE(partners_within(target, query, {1.0, 1.0, 0.0}, 1e-9, with_rule(rule)).empty());
+    EXPECT_EQ(partners_within(target, query, {2.0, 0.0, 90 * kDegree}, {1e-9}, with_rule(rule)).size(), 1U);
+    EXPECT_TRUE(partners_within(target, query, {1.0, 1.0, 0.0}, {1e-9}, with_rule(rule)).empty());
   }
 }
 
@@ -50,8 +50,8 @@ TEST(PartnersWithin, APartnerExactlyAtTheDistanceCountsUnderBothRules) {
   const PartialMap target = map_of({{{0.5, 0.0}, 0.0, 0}});
   const Shape query = query_of({{{0.0, 0.0}, 0.0, 0}});
   for (const OverlapRule rule : {OverlapRule::kNearest, OverlapRule::kAny}) {
-    EXPECT_EQ(partners_within(target, query, {}, 0.5, with_rule(rule)).size(), 1U);
-    EXPECT_TRUE(partners_within(target, query, {}, 0.4999, with_rule(rule)).empty());
+    EXPECT_EQ(partners_within(target, query, {}, {0.5}, with_rule(rule)).size(), 1U);
+    EXPECT_TRUE(partners_within(target, query, {}, {0.4999}, with_rule(rule)).empty());
   }
 }
 
@@ -73,7 +73,7 @@ TEST(PartnersWithin, EqualBruteForceUnderBothRules) {
   const Shape query = query_of(random_points(150));
   const Pose2 pose{0.1, -0.2, 0.1};
   for (const OverlapRule rule : {OverlapRule::kNearest, OverlapRule::kAny}) {
-    const std::vector<Partner> found = partners_within(target, query, pose, 0.2, with_rule(rule));
+    const std::vector<Partner> found = partners_within(target, query, pose, {0.2}, with_rule(rule));
     std::size_t k = 0;
     for (std::size_t q = 0; q < query.size(); ++q) {
       std::optional<Partner> best;
@@ -102,8 +102,8 @@ TEST(PartnersWithin, GivesUpWhenAsManyAsAskedForCannotBeReached) {
   for (std::size_t i = 0; i < 5; ++i) points[i].p_m.x() = 9.0;  // far from everything
   const Shape query = query_of(points);
   for (const OverlapRule rule : {OverlapRule::kNearest, OverlapRule::kAny}) {
-    EXPECT_EQ(partners_within(target, query, {}, 0.5, with_rule(rule), 5).size(), 5U);
-    EXPECT_LT(partners_within(target, query, {}, 0.5, with_rule(rule), 6).size(), 5U);
+    EXPECT_EQ(partners_within(target, query, {}, {0.5, 5}, with_rule(rule)).size(), 5U);
+    EXPECT_LT(partners_within(target, query, {}, {0.5, 6}, with_rule(rule)).size(), 5U);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <limits>
 
 #include "shapemap/core/angles.hpp"
 
@@ -19,6 +20,10 @@ struct Pose2 {
 
   Point2 translation() const { return {x_m, y_m}; }
 };
+
+/// Stands where there is no pose.
+inline constexpr Pose2 kNoPose{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
+                               std::numeric_limits<double>::quiet_NaN()};
 
 /// A rotation whose sine and cosine are kept, to turn many points.
 class Turn {

@@ -32,7 +32,7 @@ class TraceFile : public TraceSink {
   ~TraceFile() override;
 
   void on_shape(std::size_t scan_index, const std::vector<ShapePoint>& points) override;
-  void on_alignment(const TracedAlignment& match) override;
+  void on_alignment(const TracedAlignment& alignment) override;
   void on_link(const TracedLink& edge) override;
   void on_choice(const TracedChoice& choice) override;
   void on_revision(const TracedRevision& revision) override;

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "shapemap/graph/closed_loop.hpp"
 #include "shapemap/matching/scan_match.hpp"
+#include "shapemap/paper/paper_alignment.hpp"
 #include "shapemap/scan/placed_scan.hpp"
 
 namespace shapemap {
@@ -20,12 +22,23 @@ struct ScanResult {
   std::size_t session = 0;  ///< the recording that it is from
   int component = -1;       ///< index into MapResult::fragments; -1: no usable shape, in no fragment
   bool starts_component = false;
-  ScanMatch match;                       ///< against the scans before it; meaningless for the first position
+  ScanMatch match;  ///< by the robust method, to the scans before it; meaningless for the first position
+  std::optional<PaperAlignment> paper;   ///< by the paper's method, where there was something to align it to
   std::size_t reference = kNoReference;  ///< the position that it is to, where that is not the last keyframe before it
   /// Loops hold this position where it is, even if that alignment was wrong.
   bool loop_constrained = false;
   bool is_keyframe = true;
   std::string reason;  ///< empty when aligned without doubt; else one line that says why not
+
+  /// What either method says of the scan. It was aligned unless there was nothing to align it to: at the start of a
+  /// log, or where the paper's method starts anew.
+  bool was_aligned() const;
+  bool is_without_shape() const;
+  bool is_sure() const;
+  bool has_pose() const;  ///< of the scan in the frame of its reference
+  Pose2 ref_from_query() const;
+  std::string status_text() const;
+  const std::string& alignment_reason() const;
 };
 
 /// Seconds spent per stage, summed over threads where a stage is threaded.

@@ -5,7 +5,7 @@
 #include "shapemap/deskew/deskew.hpp"
 #include "shapemap/grid/scan_consistency.hpp"
 #include "shapemap/inference/robust_options.hpp"
-#include "shapemap/paper/paper_align.hpp"
+#include "shapemap/paper/paper_options.hpp"
 #include "shapemap/scan/returns.hpp"
 #include "shapemap/shape/polyline_em.hpp"
 #include "shapemap/shape/shape.hpp"
@@ -41,7 +41,7 @@ struct MappingOptions {
   PolylineOptions polylines;
   ShapeOptions shape;
   RobustOptions robust;
-  AlignOptions align;  ///< of the paper's method
+  PaperOptions paper;
   ConsistencyOptions consistency;
   RunOptions run;
 
@@ -66,21 +66,14 @@ struct MappingOptions {
     visit("Robust method: the whole map", self.robust.refinement);
     visit("Robust method: doubtful links", self.robust.edge_verification);
     visit("Robust method: sub-scans", self.robust.sweep_refinement);
-    visit("Paper's method: target", self.align.target);
-    visit("Paper's method: histograms", self.align.histogram);
-    visit("Paper's method: similarity", self.align.similarity);
-    visit("Paper's method: rotations", self.align.rotation);
-    visit("Paper's method: longest common subsequence", self.align.lcs);
-    visit("Paper's method: filters", self.align.filters);
-    visit("Paper's method: overlap", self.align.overlap);
-    visit("Paper's method: ICP", self.align.icp);
-    visit("Paper's method: trust", self.align.trust);
+    PaperOptions::groups(self.paper, visit);
     visit("Agreement of scans with the map", self.consistency);
     visit("Run", self.run);
   }
 };
 
-/// Turns every reading of the paper that was settled by measurement back to the literal one.
+/// Chooses the paper's method and turns every reading of the paper that was settled by measurement back to the literal
+/// one, that of its input included.
 void make_strict_paper(MappingOptions& options);
 
 /// Throws ConfigError for the first option that is out of its limits.

@@ -6,28 +6,12 @@
 
 #include "shapemap/inference/edge_verification.hpp"
 #include "shapemap/matching/match_search.hpp"
-#include "shapemap/paper/paper_align.hpp"
+#include "shapemap/paper/paper_listener.hpp"
 #include "shapemap/shape/shape.hpp"
 
 /// How a caller sees what led to a map, while it is made: for figures and analyses. See io/trace_file.hpp for one that
 /// writes it all to a file.
 namespace shapemap {
-
-/// One of the scans that make a partial map. Its points are those of its position, corrected and moved.
-struct TracedTarget {
-  std::size_t scan_index = 0;
-  std::size_t num_points = 0;
-  Pose2 ref_from_robot;
-  std::vector<Pose2> robot_from_sweep;
-};
-
-/// An alignment by the paper's method; its reference is the last of the targets.
-struct TracedAlignment {
-  std::size_t query_index = 0;
-  std::vector<TracedTarget> targets;
-  const ScanMatch& match;
-  const AlignTrace& steps;
-};
 
 /// What the robust method has to choose from between two positions.
 struct TracedLink {
@@ -60,11 +44,8 @@ struct TracedRevision {
 
 /// Calls come from one thread; shapes and alignments come in the order of the log, and what is referred to is gone
 /// afterwards. Looking on changes no result; what a sink throws ends the run. Positions are indices into the log.
-struct TraceSink {
-  virtual ~TraceSink() = default;
-  /// All that the method looks at of a position, in the robot's frame.
-  virtual void on_shape(std::size_t /*scan_index*/, const std::vector<ShapePoint>& /*points*/) {}
-  virtual void on_alignment(const TracedAlignment& /*alignment*/) {}
+/// The robust method shows shapes, too, and no alignments; the paper's method shows nothing else.
+struct TraceSink : PaperListener {
   virtual void on_link(const TracedLink& /*link*/) {}
   /// In order, after all links.
   virtual void on_revision(const TracedRevision& /*revision*/) {}

@@ -31,7 +31,7 @@ struct MatcherOptions {
 };
 
 /// The pose of `query` in the frame of `reference`, from shape alone. Never throws for scans that do not match: see
-/// Alignment::status.
+/// ScanMatch::status.
 ScanMatch match_scans(const ScanView& reference, const ScanView& query, const MatcherOptions& options);
 
 /// What is told of a hypothesis.

@@ -7,9 +7,10 @@
 #include "shapemap/paper/lcs.hpp"
 #include "shapemap/shape/shape.hpp"
 
+/// Paper, section II-C: corresponding points of a query scan and a target scan.
 namespace shapemap {
 
-/// Two points that are taken for the same place: a hypothesis until the filters have passed it.
+/// Two points that are taken for the same place. A correspondence is a hypothesis until the filters have passed it.
 struct Correspondence {
   Point2 query_m{0.0, 0.0};  ///< turned by the rotation under test, not translated
   Point2 target_m{0.0, 0.0};
@@ -18,18 +19,20 @@ struct Correspondence {
   IndexPair indices;  ///< into the query shape and the target scan's shape
   std::size_t target_scan = 0;
 
+  /// The paper's correspondence vector.
   Point2 translation_m() const { return target_m - query_m; }
 };
 
 using Correspondences = std::vector<Correspondence>;
 
-/// The points behind index pairs. `query` is the turned shape.
+/// Looks up the points behind index pairs. `query` is the turned shape.
 Correspondences correspondences_of(const std::vector<IndexPair>& pairs, const Shape& query, const Shape& target,
                                    std::size_t target_scan);
 
+/// Returns the average translation vector of the correspondences [first, last).
 Point2 mean_translation_m(const Correspondence* first, const Correspondence* last);
 
-/// Mean distance between the partners after the query has been moved by `translation_m`.
+/// Returns the average distance between corresponding points after the query has been moved by `translation_m`.
 double mean_distance_m(const Correspondence* first, const Correspondence* last, const Point2& translation_m);
 
 }  // namespace shapemap

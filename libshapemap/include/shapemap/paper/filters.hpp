@@ -6,7 +6,8 @@
 #include "shapemap/core/options.hpp"
 #include "shapemap/paper/correspondence.hpp"
 
-/// Paper, sections II-D and III: from hypotheses of correspondences to one translation.
+/// Paper, sections II-D and III: from hypotheses of correspondences to one translation. The collinear filter and the
+/// segment filter eliminate false correspondences; segment-wise translation chooses among what they leave.
 namespace shapemap {
 
 struct FilterOptions {
@@ -32,21 +33,22 @@ struct FilterOptions {
   }
 };
 
-/// Drops correspondences whose translation runs along the tangent of either point: slid along a wall, they say
-/// nothing. A translation of zero has no direction and stays.
+/// Section II-D, "collinear filter": drops correspondences whose translation runs along the tangent of either point.
+/// Slid along a wall, they say nothing. A translation of zero has no direction and stays.
 Correspondences collinear_filter(const Correspondences& correspondences, const FilterOptions& options);
 
-/// Consecutive correspondences without a jump in either sequence.
+/// Runs of consecutive correspondences without a jump in either sequence.
 using Segments = std::vector<Correspondences>;
 
-/// Cuts where a correspondence lies `segment_gap_m` or more from the one before it, in either scan, or belongs to
-/// another target scan.
+/// Starts a new segment where a correspondence lies `segment_gap_m` or more from the one before it, in either scan, or
+/// belongs to another target scan.
 Segments cut_into_segments(const Correspondences& correspondences, const FilterOptions& options);
 
-/// For each segment as the main one: translates by its mean, drops the segments that are then much worse than the
-/// main one; the quality of the main segment is the number of correspondences left. Returns the surviving segments of
-/// the best main segments, best first. The paper goes on with the best alone (`main_segments = 1`); more of them let
-/// the scan overlap decide between translations that are `segment_distance_slack_m` or more apart.
+/// Section II-D, "segment filter": takes each segment as the main segment, translates by its mean and drops the
+/// segments that are then much worse than it; the quality of the main segment is the number of correspondences left.
+/// Returns the surviving segments of the best main segments, best first. The paper goes on with the best alone
+/// (`main_segments = 1`); more of them let the scan overlap measure decide between translations that are
+/// `segment_distance_slack_m` or more apart.
 std::vector<Segments> segment_filter(const Segments& segments, const FilterOptions& options);
 
 /// A translation of the turned query, and what supports it.
@@ -57,8 +59,8 @@ struct SegmentTranslation {
   Correspondences kept;          ///< those pairs
 };
 
-/// Segment-wise translation: of the mean translations of the segments, the one that keeps most point pairs within its
-/// own segment's mean distance.
+/// Section III, "segment wise translation": returns, of the mean translations of the segments, the one that keeps most
+/// point pairs within its own segment's mean distance.
 SegmentTranslation segment_wise_translation(const Segments& segments);
 
 }  // namespace shapemap

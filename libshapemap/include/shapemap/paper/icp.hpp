@@ -7,13 +7,14 @@
 #include "shapemap/paper/partial_map.hpp"
 #include "shapemap/paper/scan_overlap.hpp"
 
-/// Paper, sections IV and V-A: iterative closest points with a tangent gate and a quality check.
+/// Paper, sections IV and V-A: iterative closest point (ICP) with thresholds of distance and tangent direction and a
+/// check of quality.
 namespace shapemap {
 
-/// Up to which distance partners pull, from the mean distance of the overlapping points at the start.
+/// How the distance threshold, within which partners pull, follows from the mean distance of the overlapping points.
 enum class IcpGate {
   kFactor,  ///< a multiple of the mean
-  kSlack,   ///< the mean and the slack of the scan overlap measure
+  kSlack,   ///< the mean at the start and the slack of the scan overlap measure
 };
 
 template <>
@@ -43,27 +44,32 @@ struct IcpOptions {
   }
 };
 
-/// The rigid motion that brings the query points of `partners` closest to their targets in the least squares sense
-/// (Arun, Huang and Blostein 1987, in the plane); needs two partners or more.
+/// Returns the rigid motion that brings the query points of `partners` closest to their targets in the least squares
+/// sense (Arun, Huang and Blostein 1987, in the plane). It needs two partners or more.
 Pose2 fit_pose(const PartialMap& target, const Shape& query, const std::vector<Partner>& partners);
+
+/// From where ICP sets out.
+struct IcpStart {
+  Pose2 target_from_query{};
+  double mean_distance_m = 0.0;  ///< among the correspondences that gave the pose
+};
 
 struct IcpResult {
   Pose2 target_from_query;
   ScanOverlap overlap;       ///< at that pose
   int iterations = 0;        ///< that were kept
-  std::vector<Pose2> steps;  ///< pose before the first and after each kept iteration
+  std::vector<Pose2> steps;  ///< the pose before the first iteration and after each that was kept
 };
 
-/// Refines `start`. `mean_distance_m` is that of the correspondences which gave the start. An iteration after which
-/// the overlap is smaller and the overlap distance larger is rolled back, and ends it.
-IcpResult icp(const PartialMap& target, const Shape& query, const Pose2& start, double mean_distance_m,
-              const IcpOptions& options, const OverlapOptions& overlap_options);
+/// Section IV: refines the pose of the complete query scan. An iteration after which the scan overlap measure is
+/// smaller and the overlap distance larger is rolled back, and ends the loop.
+IcpResult icp(const PartialMap& target, const Shape& query, const IcpStart& start, const IcpOptions& options,
+              const OverlapOptions& overlap_options);
 
-/// Decoupled ICP: each sub-scan of `query` refined by itself from the pose of the whole. Returns the pose of each
-/// sub-scan in the frame of the query; identity for one that nothing pulls, or that is pulled farther than the small
-/// errors of taking sub-scans allow.
-std::vector<Pose2> decoupled_icp(const PartialMap& target, const Shape& query, const Pose2& target_from_query,
-                                 double mean_distance_m, const IcpOptions& options,
-                                 const OverlapOptions& overlap_options);
+/// Section V-A, "decoupled ICP": refines each sweep of `query` by itself from the pose of the complete scan. Returns
+/// the pose of each sweep in the frame of the query, which is the identity for a sweep that nothing pulls, or that is
+/// pulled farther than the small errors of taking sweeps allow.
+std::vector<Pose2> decoupled_icp(const PartialMap& target, const Shape& query, const IcpStart& start,
+                                 const IcpOptions& options, const OverlapOptions& overlap_options);
 
 }  // namespace shapemap

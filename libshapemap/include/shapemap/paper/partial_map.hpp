@@ -8,30 +8,32 @@
 #include "shapemap/shape/point_index.hpp"
 #include "shapemap/shape/shape.hpp"
 
+/// Paper, section II-C: the partial global map, of a few recent scans, that a query scan is aligned to.
 namespace shapemap {
 
-/// A scan that others are aligned to. What is slow to compute, the directions between its points, is shared by all the
-/// partial maps that it is part of, however it is turned there.
+/// A scan that query scans are aligned to. What is slow to compute, the directions between its points, is shared by all
+/// the partial maps that it is part of, however it is turned there.
 struct TargetScan {
   Shape shape;  ///< in the frame of the partial map
   std::shared_ptr<const NeighbourDirections> directions;
   double turned_rad = 0.0;  ///< of `shape` since `directions` were computed
 };
 
+/// Computes those directions, up to the radius of the angular histograms.
 TargetScan target_scan(Shape shape, double histogram_radius_m);
 
-/// The same scan in another frame.
+/// Moves a scan to another frame.
 TargetScan moved(const TargetScan& scan, const Pose2& b_from_a);
 
-/// A few recent scans at their estimated poses, all in the frame of the reference (the latest of them): what a query is
-/// aligned to (paper, section II-C). Built once per alignment and not changed by it.
+/// A few recent scans at their estimated poses, all in the frame of the reference, which is the latest of them. A
+/// partial map is built once for each alignment and not changed by it.
 class PartialMap {
  public:
   /// `scans` are already in the reference frame.
   explicit PartialMap(std::vector<TargetScan> scans);
 
-  /// With `as_one_sequence`, all scans are one long sequence of points, in the order given, for a single LCS; else each
-  /// scan is matched on its own.
+  /// With `as_one_sequence`, the points of all scans, in the order given, are one long sequence for a single LCS; else
+  /// each scan is matched on its own.
   PartialMap(const std::vector<Shape>& scans, bool as_one_sequence, double histogram_radius_m);
 
   const std::vector<TargetScan>& sequences() const { return sequences_; }

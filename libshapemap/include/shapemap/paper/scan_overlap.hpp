@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
+#include <cstddef>
 #include <vector>
 
 #include "shapemap/core/options.hpp"
 #include "shapemap/paper/partial_map.hpp"
 
-/// Paper, section III: how well an aligned query covers the target.
+/// Paper, section III, "scan overlap measure": how much of an aligned query scan covers the target scan.
 namespace shapemap {
 
-/// Which target point a query point is compared to.
+/// Which target point a query point is compared to: the paper leaves that open.
 enum class OverlapRule {
-  kNearest,  ///< the nearest one, which must then have a similar tangent
-  kAny,      ///< the nearest one of those that have a similar tangent
+  kNearest,  ///< the nearest one, which must then have a similar tangent direction
+  kAny,      ///< the nearest one of those that have a similar tangent direction
 };
 
 template <>
@@ -43,11 +43,17 @@ struct Partner {
   double distance_m = 0.0;
 };
 
-/// The partner of each query point within `max_distance_m`, for those that have one. Gives up, with fewer than
-/// `at_least`, as soon as so many cannot be reached.
-std::vector<Partner> partners_within(const PartialMap& target, const Shape& query, const Pose2& target_from_query,
-                                     double max_distance_m, const OverlapOptions& options, std::size_t at_least = 0);
+/// Which partners are looked for.
+struct PartnerLimits {
+  double max_distance_m = 0.0;  ///< the paper's distance threshold
+  std::size_t at_least = 0;     ///< the search may give up, with fewer, as soon as so many cannot be reached
+};
 
+/// Returns the partner of each query point that has one within the limits.
+std::vector<Partner> partners_within(const PartialMap& target, const Shape& query, const Pose2& target_from_query,
+                                     const PartnerLimits& limits, const OverlapOptions& options);
+
+/// How many query points have a partner, and how far it is from them on average.
 struct ScanOverlap {
   int num_points = 0;            ///< the scan overlap measure
   double mean_distance_m = 0.0;  ///< the overlap distance

@@ -8,7 +8,7 @@
 #include "shapemap/core/options.hpp"
 #include "shapemap/shape/angular_histogram.hpp"
 
-/// Paper, sections II-A and II-B: which points of two scans are similar.
+/// Paper, sections II-A and II-B: which points of two scans are similar, by tangent directions and angular histograms.
 namespace shapemap {
 
 struct SimilarityOptions {
@@ -50,7 +50,7 @@ class BitMatrix {
   std::vector<Word> bits_;
 };
 
-/// Tangents and histograms of a scan at one rotation, point by point.
+/// The tangent directions and angular histograms of a scan at one rotation, point by point.
 struct ScanFeatures {
   std::vector<double> tangents_rad;
   std::vector<AngularHistogram> histograms;
@@ -58,16 +58,17 @@ struct ScanFeatures {
   std::size_t size() const { return tangents_rad.size(); }
 };
 
-/// Features of `shape` turned by `rotation_rad`; `directions` are those of the same shape, not turned.
+/// Computes the features of `shape` turned by `rotation_rad`; `directions` are those of the same shape, not turned.
 ScanFeatures features_of(const Shape& shape, const NeighbourDirections& directions, double rotation_rad,
                          HistogramNorm norm);
 
-/// Features of a target, ordered by tangent for quick look-up.
+/// The features of a target scan, ordered by tangent for quick look-up.
 class SimilarityIndex {
  public:
   SimilarityIndex(const ScanFeatures& target, const SimilarityOptions& options);
 
-  /// Rows are points of the query, columns points of the target; a bit says "similar".
+  /// In the matrix, rows are points of the query and columns points of the target; a set bit says that they are
+  /// similar.
   BitMatrix matches(const ScanFeatures& query) const;
 
  private:
