@@ -24,7 +24,7 @@ const char* value_name(OptionEntry::Kind kind) {
   return "";
 }
 
-/// Meaning, limits, and the default in the way it would be typed.
+/// Returns meaning, limits, and the default in the way it would be typed.
 std::string description_of(const OptionEntry& entry) {
   const std::string value = entry.text();
   std::string typed = "--" + entry.name;
@@ -75,7 +75,7 @@ void FormatText::add(CLI::App& app, const char* name, const std::string& help) {
 LogFormat FormatText::format(const char* name) const { return parse_choice<LogFormat>(Field{name, ""}, text); }
 
 bool parse(CLI::App& app, const std::vector<std::string>& arguments) {
-  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // the order CLI11 wants
+  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // CLI11 wants this order
   try {
     app.parse(reversed);
   } catch (const CLI::CallForVersion& e) {

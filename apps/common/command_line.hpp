@@ -8,14 +8,14 @@
 #include "option_table.hpp"
 #include "shapemap/io/log_file.hpp"
 
-/// CLI11 as all commands use it.
+/// All commands use CLI11 through these functions.
 namespace shapemap::cli {
 
-/// The options of `table` as flags of `app`. What is typed is kept aside, so that the options file can come first.
+/// Makes the options of `table` flags of `app`. Typed values are kept aside, so that the options file can come first.
 class TableFlags {
  public:
   TableFlags(CLI::App& app, const OptionTable& table);
-  /// Sets what was typed. Throws ConfigError.
+  /// Sets the typed values. Throws ConfigError.
   void apply() const;
 
  private:
@@ -26,7 +26,7 @@ class TableFlags {
   std::vector<Flag> flags_;
 };
 
-/// Holds a format option's text until it is looked at.
+/// Holds the text of a format option until it is parsed.
 struct FormatText {
   std::string text = "auto";
 
@@ -34,10 +34,10 @@ struct FormatText {
   LogFormat format(const char* name) const;
 };
 
-/// False when help or the version was asked for; it has been printed then. Throws ConfigError for wrong usage.
+/// Returns false when help or the version was asked for and has been printed. Throws ConfigError for wrong usage.
 bool parse(CLI::App& app, const std::vector<std::string>& arguments);
 
-/// The help's last lines that all commands share.
+/// Returns the last lines of the help, which all commands share.
 std::string exit_code_help();
 
 }  // namespace shapemap::cli

@@ -12,14 +12,14 @@
 namespace shapemap::cli {
 namespace {
 
-/// "360", or "340 to 380, unevenly spaced,".
+/// Returns a text such as "360" or "340 to 380, unevenly spaced,".
 std::string beams_text(const LogSummary::Sensor& sensor) {
   std::string text = std::to_string(sensor.fewest_beams);
   if (sensor.most_beams != sensor.fewest_beams) text += " to " + std::to_string(sensor.most_beams);
   return text + (sensor.has_uneven_beams ? ", unevenly spaced," : "");
 }
 
-/// What is odd about the scans of a sensor, a line each.
+/// Returns a line for each oddity of the sweeps of a sensor.
 std::string oddities_text(const LogSummary::Sensor& sensor) {
   std::string all;
   const auto add = [&](std::size_t count, const char* what) {
@@ -31,7 +31,7 @@ std::string oddities_text(const LogSummary::Sensor& sensor) {
   return all;
 }
 
-/// Three digits at a time.
+/// Groups the digits by three.
 std::string grouped(std::size_t number) {
   std::string digits = std::to_string(number);
   for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, " ");

@@ -13,7 +13,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Of this process since its start, user and system time of all threads.
+/// Returns the user and system time of all threads of this process since its start.
 double cpu_seconds();
 double peak_memory_mib();
 

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// `.NAME.PID-COUNT`, with or without an ending; NAME may be one of these itself.
+/// Recognises `.NAME.PID-COUNT`, with or without an ending; NAME may be one of these itself.
 bool is_ours(const std::string& name) {
   const std::string mark = "." + std::to_string(::getpid()) + "-";
   const std::size_t at = name.rfind(mark);

@@ -3,10 +3,10 @@
 
 #include <string>
 
-/// What a process that leaves in the middle of its work would leave behind.
+/// A process that leaves in the middle of its work would leave files behind.
 namespace shapemap::cli {
 
-/// Takes away the temporary files of AtomicFile that this process has in `folder`.
+/// Removes the temporary files of AtomicFile that this process has in `folder`.
 void remove_temporary_files(const std::string& folder);
 
 }  // namespace shapemap::cli

@@ -7,16 +7,16 @@
 #include "output_set.hpp"
 #include "shapemap/grid/occupancy_grid.hpp"
 
-/// The picture of a map and the map.yaml beside it.
+/// A map is written as a picture with a map.yaml beside it.
 namespace shapemap::cli {
 
 /// Throws ConfigError when the file that `option` gives is no picture that can be written.
 void check_map_path(const std::string& option, const std::string& map_path);
 
-/// The map.yaml beside the picture.
+/// Returns the path of the map.yaml beside the picture.
 std::string ros_yaml_path(const std::string& map_path);
 
-/// Prepares both; `path_to_draw` may be null.
+/// Prepares both files; `path_to_draw` may be null.
 void add_map(const std::string& map_path, const OccupancyGrid& map, const std::vector<PlacedScan>* path_to_draw,
              OutputSet& outputs);
 

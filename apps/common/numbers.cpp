@@ -20,7 +20,7 @@ std::string with_digits(double value, int digits) {
                     number_text(field.lowest, 1.0) + " to " + number_text(field.highest, 1.0));
 }
 
-/// The whole of `text` as a number; a plus sign is allowed, as in TOML.
+/// Reads the whole of `text` as a number; a plus sign is allowed, as in TOML.
 template <class Number>
 bool read_number(const std::string& text, Number& value) {
   const char* first = text.data() + (text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0);
@@ -34,7 +34,7 @@ bool read_number(const std::string& text, Number& value) {
 std::string number_text(double stored, double unit) {
   const double shown = stored / unit;
   const double infinity = std::numeric_limits<double>::infinity();
-  // Dividing by the unit and multiplying again may miss by a bit: then a neighbour does not.
+  // Dividing by the unit and multiplying again may miss by a bit; then a neighbour does not.
   for (const double candidate : {shown, std::nextafter(shown, infinity), std::nextafter(shown, -infinity)}) {
     for (int digits = 6; digits <= 17; ++digits) {
       const std::string text = with_digits(candidate, digits);

@@ -11,7 +11,7 @@
 
 namespace shapemap::cli {
 
-/// One option behind its text. `text` and `set` refer to the struct that the table was made of.
+/// An entry gives access to one option as text. `text` and `set` refer to the struct that the table was made of.
 struct OptionEntry {
   enum class Kind { kNumber, kInteger, kSwitch, kText, kChoice };
 
@@ -20,14 +20,14 @@ struct OptionEntry {
   std::string old_name;  ///< accepted as well; may be empty
   std::string help;
   Kind kind = Kind::kText;
-  std::string allowed;                          ///< limits or spellings, for the help
-  std::function<std::string()> text;            ///< as it would be typed; "true" or "false" for a switch
+  std::string allowed;                ///< limits or spellings, for the help
+  std::function<std::string()> text;  ///< returns the text as it would be typed; "true" or "false" for a switch
   std::function<void(const std::string&)> set;  ///< throws ConfigError
 };
 
 using OptionTable = std::vector<OptionEntry>;
 
-/// "true" or "false"; throws ConfigError for anything else.
+/// Accepts "true" or "false"; throws ConfigError for anything else.
 bool parse_switch(const Field& field, const std::string& text);
 std::string limits_text(const Field& field);
 
@@ -83,7 +83,7 @@ void append_options(OptionTable& table, const std::string& group, Options& optio
   Options::fields(options, [&](const Field& field, auto& value) { table.push_back(make_entry(group, field, value)); });
 }
 
-/// Every option of `settings`, in the order of its groups. The table must not outlive `settings`.
+/// Returns every option of `settings`, in the order of its groups. The table must not outlive `settings`.
 template <class Settings>
 OptionTable option_table(Settings& settings) {
   OptionTable table;
@@ -91,7 +91,7 @@ OptionTable option_table(Settings& settings) {
   return table;
 }
 
-/// The entry called `name`, now or before, or null.
+/// Returns the entry that is called `name`, now or before, or null.
 const OptionEntry* find_option(const OptionTable& table, const std::string& name);
 
 }  // namespace shapemap::cli

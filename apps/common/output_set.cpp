@@ -53,8 +53,8 @@ void check_output(const std::string& path, bool force) {
   }
 }
 
-/// Held while the files of one run go to their places. Where a folder cannot be locked, or is locked for long, the run
-/// goes on without.
+/// Locks a folder while the files of one run move to their places. Where a folder cannot be locked, or is locked for
+/// long, the run goes on without.
 class FolderLock {
  public:
   explicit FolderLock(const std::string& folder)
@@ -77,7 +77,7 @@ class FolderLock {
   int descriptor_;
 };
 
-/// `message` about the file that the user knows, not about the temporary one.
+/// Makes `message` name the file that the user knows, not the temporary one.
 std::string with_name(std::string message, const std::string& temporary_path, const std::string& path) {
   const std::size_t at = message.find(temporary_path);
   return at == std::string::npos ? message : message.replace(at, temporary_path.size(), path);
@@ -97,7 +97,7 @@ bool same_file(const std::string& a, const std::string& b) {
   const auto full = [](const std::string& path) {
     std::error_code error;
     const fs::path resolved = fs::weakly_canonical(fs::absolute(path), error);
-    return error ? fs::absolute(path).lexically_normal() : resolved;  // in a folder that may not be entered
+    return error ? fs::absolute(path).lexically_normal() : resolved;  // a folder on the way may not be entered
   };
   return full(a) == full(b) || fs::equivalent(a, b, ignored);
 }
@@ -161,7 +161,7 @@ void OutputSet::commit_files() {
 }
 
 void OutputSet::commit(IfInterrupted rule) {
-  // Streams first: they cannot be taken back, and the files need nothing but a rename any more.
+  // Streams come first: they cannot be taken back, and the files need nothing but a rename any more.
   for (const Stream& stream : streams_) write_stream(stream.path, stream.content);
   if (interrupted() && rule == IfInterrupted::kDropAll) throw Interrupted();
   set_interrupt_policy(OnInterrupt::kFinishAll);

@@ -15,37 +15,37 @@ namespace shapemap::cli {
 /// Throws ConfigError when two of `paths`, or one and `input`, are the same file.
 void check_distinct(const std::vector<std::string>& paths, const std::string& input);
 
-/// Before the work: whether the outputs could be written, and are distinct. Throws OutputError when a folder is missing
-/// or closed, or a file exists and `force` is false.
+/// Checks before the work that the outputs can be written and are distinct. Throws OutputError when a folder is missing
+/// or closed, or when a file exists and `force` is false.
 void check_outputs(const std::vector<std::string>& paths, const std::string& input, bool force);
 
-/// Where nothing can be put in place afterwards: standard output ("-"), a device, a pipe.
+/// Says whether nothing can be put in place afterwards: standard output ("-"), a device, a pipe.
 bool is_stream(const std::string& path);
 
-/// Also by way of links; "-" is only itself.
+/// Compares files also through links; "-" is only itself.
 bool same_file(const std::string& a, const std::string& b);
 
-/// What OutputSet::commit() does when the run was interrupted before the first file is in place.
+/// Tells OutputSet::commit() what to do when the run was interrupted before the first file is in place.
 enum class IfInterrupted { kDropAll, kWriteAll };
 
 class OutputSet {
  public:
   using Writer = std::function<void(const std::string& temporary_path)>;
 
-  /// Without `force`, a file that comes to be while the outputs are made is not replaced.
+  /// Without `force`, a file that appears while the outputs are made is not replaced.
   explicit OutputSet(bool force) : force_(force) {}
 
   /// Calls `write` with a path in the folder of `path` and with its ending. Throws OutputError.
   void add(const std::string& path, const Writer& write);
-  /// `path` may also be "-" for standard output, a device or a pipe; those are written on commit.
+  /// Takes also "-" for standard output, a device or a pipe as `path`; those are written on commit.
   void add_text(const std::string& path, const std::string& content);
-  /// Makes the folder unless it is there; it goes again with what was to be in it.
+  /// Makes the folder unless it exists; without a commit it is removed together with its files.
   void add_folder(const std::string& path);
-  /// A file that goes when the others have come.
+  /// Marks a file for removal once the others are in place.
   void remove(const std::string& path) { outdated_.push_back(path); }
-  /// Everything to its place. When something fails, all is as it was before. Of runs that write to the same folder, one
-  /// waits for the other, so that no map gets the scale of another.
-  /// Throws Interrupted by the rule, and when an interrupt ends the wait for the reader of a pipe.
+  /// Moves everything to its place. When something fails, all is as it was before. Of runs that write to the same
+  /// folder, one waits for the other, so that no map gets the scale of another. Throws Interrupted by the rule, and
+  /// when an interrupt ends the wait for the reader of a pipe.
   void commit(IfInterrupted rule = IfInterrupted::kDropAll);
 
  private:
@@ -72,7 +72,7 @@ class OutputSet {
   void commit_files();
 
   bool force_;
-  std::vector<std::unique_ptr<NewFolder>> folders_;  ///< before the files, which must be gone first
+  std::vector<std::unique_ptr<NewFolder>> folders_;  ///< precede the files, so that these are removed first
   std::vector<File> files_;
   std::vector<Stream> streams_;
   std::vector<std::string> outdated_;

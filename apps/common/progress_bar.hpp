@@ -7,32 +7,32 @@
 
 namespace shapemap::cli {
 
-/// What a bar tells.
+/// A bar shows this state.
 struct Progress {
-  std::string stage;      ///< what is done now; empty where all is one stage
-  const char* what = "";  ///< is counted
+  std::string stage;      ///< what runs now; empty where all is one stage
+  const char* what = "";  ///< name of the things that are counted
   std::size_t done = 0;
-  std::size_t total = 0;   ///< 0: not known, and then there is a time and no bar
+  std::size_t total = 0;   ///< 0 is unknown; then a time is shown in place of a bar
   double elapsed_s = 0.0;  ///< since the stage began
 };
 
-/// The line of a bar of `width` characters with rate and time left.
+/// Returns the line of a bar of `width` characters with rate and time left.
 std::string progress_line(const Progress& progress, std::size_t width);
 
-/// Draws on stderr, over and over on one line, at most ten times a second; nothing unless stderr is a terminal.
+/// Redraws one line on stderr, at most ten times a second, and only if stderr is a terminal.
 class ProgressBar {
  public:
-  /// `what` is counted.
+  /// `what` names the things that are counted.
   ProgressBar(bool enabled, const char* what);
   ~ProgressBar() { clear(); }
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// From here on, `what` is counted anew.
+  /// Starts a stage, in which `what` is counted from 0.
   void start(std::string stage, const char* what);
   /// Within a stage the bar never goes back.
   void update(std::size_t done, std::size_t total);
-  /// Time goes on, whether there is progress or not.
+  /// Shows the time, whether there is progress or not.
   void tick();
   /// Takes the bar off the screen, so that other lines can follow.
   void clear();

@@ -12,7 +12,7 @@
 
 namespace shapemap::cli {
 
-/// Feeds the progress bar, keeps warnings for later, and stops the run on Ctrl-C.
+/// Drives the progress bar, keeps warnings for later, and stops the run on Ctrl-C.
 class ConsoleObserver : public RunObserver {
  public:
   explicit ConsoleObserver(bool show_progress, const char* what = "positions") : progress_(show_progress, what) {}
@@ -38,7 +38,7 @@ class ConsoleObserver : public RunObserver {
 
   void finish() { progress_.clear(); }
   const std::vector<std::string>& warnings() const { return warnings_; }
-  /// Each thousand positions that were read, about.
+  /// Returns the costs after about each thousand scans that were read.
   const std::vector<Milestone>& milestones() const { return milestones_; }
 
  private:

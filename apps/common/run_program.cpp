@@ -17,8 +17,8 @@
 namespace shapemap::cli {
 namespace {
 
-/// A file that is opened while a standard descriptor is closed would get its number, and be written over by what is
-/// meant for a terminal. Opened the wrong way round, so that writing to a closed standard output still fails.
+/// Occupies closed standard descriptors: a file opened later would get such a number, and be overwritten with text for
+/// a terminal. They are opened the wrong way round, so that writing to a closed standard output still fails.
 void occupy_standard_descriptors() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;

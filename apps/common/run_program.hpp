@@ -6,10 +6,10 @@
 
 namespace shapemap::cli {
 
-/// Begins every line that the program prints about itself. Each program defines its own.
+/// The name begins every line that the program prints about itself. Each program defines its own.
 extern const char* const kProgramName;
 
-/// Calls `run` with what was typed after the program's name and returns the exit code; failures become one line on
+/// Calls `run` with the arguments after the program's name and returns the exit code; failures become one line on
 /// stderr.
 int run_program(int argc, char** argv, int (*run)(const std::vector<std::string>& typed));
 

@@ -22,10 +22,10 @@
 namespace shapemap::cli {
 namespace {
 
-// A signal handler reaches nothing but globals of this type.
+// A signal handler may use only globals of this type.
 volatile std::sig_atomic_t policy_now = static_cast<int>(OnInterrupt::kExitAtOnce);
 volatile std::sig_atomic_t was_interrupted = 0;
-volatile std::sig_atomic_t wake_cleaner = -1;  ///< writing to it has the leftovers taken away; -1: there are none
+volatile std::sig_atomic_t wake_cleaner = -1;  ///< a write to this descriptor removes the leftovers; -1: there are none
 
 /// Cleaning up takes much less; if it never ends, work goes on rather than hang.
 constexpr int kCleaning_ms = 5000;
@@ -56,10 +56,10 @@ void handle(int signal, void (*handler)(int)) {
   sigaction(signal, &action, nullptr);
 }
 
-/// The folders that a second interrupt looks into; lives as long as the process, which may end at any moment.
+/// A second interrupt searches these folders. They live as long as the process, which may end at any moment.
 struct Leftovers {
   std::mutex mutex;
-  std::map<std::string, bool> folders;  ///< and whether it is new
+  std::map<std::string, bool> folders;  ///< maps each folder to whether it is new
 };
 
 Leftovers& leftovers() {
@@ -78,7 +78,7 @@ void clean_up_when_woken(int read_end) {
   leave();
 }
 
-/// A handler cannot list folders; this thread does it, and takes no signals itself.
+/// A signal handler cannot list folders; this thread does it, and takes no signals itself.
 void start_cleaner() {
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) return;
@@ -89,7 +89,7 @@ void start_cleaner() {
   try {
     std::thread(clean_up_when_woken, ends[0]).detach();
     wake_cleaner = ends[1];
-  } catch (const std::system_error&) {  // no thread is to be had: a second interrupt leaves the files
+  } catch (const std::system_error&) {  // without a thread, a second interrupt leaves the files
     ::close(ends[0]);
     ::close(ends[1]);
   }
@@ -99,7 +99,7 @@ void start_cleaner() {
 }  // namespace
 
 void install_signal_handlers() {
-  // No SA_RESTART: waiting for the reader of a pipe ends.
+  // SA_RESTART is not set, so that an interrupt ends the wait for the reader of a pipe.
   for (const int signal : {SIGINT, SIGTERM}) handle(signal, on_interrupt);
   for (const int signal : {SIGPIPE, SIGXFSZ}) handle(signal, SIG_IGN);
 }

@@ -60,14 +60,14 @@ struct Arguments {
   LogFormat format = LogFormat::kAuto;
   MotionSources motions;
   std::string trajectory_path;
-  std::string map_path;  ///< empty: none
+  std::string map_path;  ///< no map is wanted when this is empty
   bool force = false;
   bool quiet = false;
   BaselineSettings settings;
 };
 
-/// `typed` is what comes after the program's name. Nothing is returned when help or the version was asked for and
-/// printed. Throws ConfigError for wrong usage.
+/// Parses the arguments after the program's name. Returns nothing when help or the version was asked for and printed.
+/// Throws ConfigError for wrong usage.
 std::optional<Arguments> parse_arguments(const std::vector<std::string>& typed);
 
 }  // namespace shapemap::baselines

@@ -6,7 +6,7 @@
 namespace shapemap::baselines {
 namespace {
 
-/// No score of ours has so long a slope; one that is not finite or not a function of the pose ends here.
+/// No score has so long a slope; one that is not finite or not a function of the pose ends here.
 constexpr int kMaxMoves = 1000;
 
 }  // namespace

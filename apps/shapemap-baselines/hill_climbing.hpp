@@ -13,8 +13,8 @@ struct ClimbSteps {
   int halvings = 4;
 };
 
-/// From `start`, the best of steps ahead, back, left, right and turns to both sides is taken as long as there is a
-/// better one; then the steps are halved, so many times.
+/// Climbs from `start`: takes the best of steps ahead, back, left, right and turns to both sides as long as there is a
+/// better one, then halves the steps, `halvings` times.
 Pose2 climb(const Pose2& start, const std::function<double(const Pose2&)>& score, ClimbSteps steps);
 
 }  // namespace shapemap::baselines

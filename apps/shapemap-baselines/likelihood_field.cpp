@@ -7,7 +7,7 @@
 namespace shapemap::baselines {
 namespace {
 
-constexpr double kReachSigmas = 3.0;  // beyond, the Gaussian is below 0.012
+constexpr double kReachSigmas = 3.0;  // the Gaussian is below 0.012 beyond this
 constexpr double kCellsPerSigma = 2.0;
 
 }  // namespace

@@ -7,19 +7,19 @@
 
 namespace shapemap::baselines {
 
-/// A place where beams ended, and the share of the beams reaching it that did.
+/// A spot is a place where beams ended, with the share of the beams reaching it that did.
 struct OccupiedSpot {
   Point2 p_m;
   double occupancy = 0.0;
 };
 
-/// How likely a beam is to end at a place, smoothed by a Gaussian: 1 on a certain wall, 0 far from all.
+/// The likelihood of a beam to end at a place, smoothed by a Gaussian: 1 on a certain wall, 0 far from all.
 class LikelihoodField {
  public:
   LikelihoodField(const std::vector<OccupiedSpot>& spots, double sigma_m);
 
   double sigma_m() const { return sigma_m_; }
-  /// Between the cells' centres interpolated; 0 outside.
+  /// Interpolates between the centres of the cells; the field is 0 outside.
   double at(const Point2& p_m) const;
 
  private:

@@ -10,10 +10,10 @@ namespace {
 struct CellCount {
   int ended = 0;
   int passed = 0;
-  Eigen::Vector2f sum_m{0.0F, 0.0F};  ///< of the ends, from the corner of the grid
+  Eigen::Vector2f sum_m{0.0F, 0.0F};  ///< sum of the ends, from the corner of the grid
 };
 
-/// Counts for the rectangle that all beams lie in.
+/// Counts beams per cell of the rectangle that holds them all.
 class CountGrid {
  public:
   CountGrid(const std::vector<const std::vector<Beam>*>& scans, double cell_m) : cell_m_(cell_m) {
@@ -29,7 +29,7 @@ class CountGrid {
     cells_.resize(static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y()));
   }
 
-  /// The beam passes through a cell of each step along its longer side.
+  /// Counts a beam, which passes through one cell for each step along its longer side.
   void count(const Beam& beam) {
     const Point2 way = (beam.to_m - beam.from_m) / cell_m_;
     const int steps = static_cast<int>(std::max(std::abs(way.x()), std::abs(way.y())));

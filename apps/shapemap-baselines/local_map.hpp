@@ -9,31 +9,31 @@
 
 namespace shapemap::baselines {
 
-/// A beam that hit something, in the robot's frame.
+/// A beam, in the robot's frame, ends at its return.
 struct Beam {
   Point2 from_m;
   Point2 to_m;
 };
 
-/// The beams of all sub-scans of a position that are not longer than `max_range_m`.
+/// Returns the beams of all sweeps of a scan that are not longer than `max_range_m`.
 std::vector<Beam> beams_of(const Scan& scan, const ReturnOptions& returns, double max_range_m);
 
-/// What the latest scans have seen, by counting: each cell's occupancy is the share of the beams that ended there among
-/// those that came so far, so that what walked away fades.
+/// Counts what the latest scans have seen: the occupancy of a cell is the share of the beams that ended there among
+/// those that reached it, so that things that moved away fade.
 class LocalMap {
  public:
   LocalMap(std::size_t num_scans, double cell_m) : num_scans_(num_scans), cell_m_(cell_m) {}
 
-  /// Forgets the oldest scan when there are too many.
+  /// Adds a scan, and forgets the oldest one when there are too many.
   void add(const Pose2& map_from_robot, const std::vector<Beam>& beams);
-  /// One spot for each cell in which a beam ended, in the middle of these ends. Only the scans count that were taken
-  /// less than `radius_m` from `centre_m`.
+  /// Returns one spot for each cell in which a beam ended, at the mean of these ends. Only scans taken less than
+  /// `radius_m` from `centre_m` count.
   std::vector<OccupiedSpot> occupied_spots(const Point2& centre_m, double radius_m) const;
 
  private:
   std::size_t num_scans_;
   double cell_m_;
-  std::deque<std::vector<Beam>> scans_;  ///< in the map's frame; none is empty
+  std::deque<std::vector<Beam>> scans_;  ///< in the map frame; none is empty
 };
 
 }  // namespace shapemap::baselines

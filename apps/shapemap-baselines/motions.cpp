@@ -17,7 +17,7 @@ Eigen::Matrix3d covariance_of(double sigma_m, double sigma_rad) {
   return Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad).asDiagonal();
 }
 
-/// For each position the line with its time, or null. Both are in the order of the log; a log may repeat a time.
+/// Finds, for each scan, the line with its time, or null. Both are in the order of the log; a log may repeat a time.
 template <class Timed>
 std::vector<const Timed*> by_scan(const Log& log, const std::vector<Timed>& lines) {
   std::vector<const Timed*> found(log.scans.size(), nullptr);
@@ -38,7 +38,7 @@ std::vector<const Timed*> by_scan(const Log& log, const std::vector<Timed>& line
   return found;
 }
 
-/// The motion to each position of the log; nothing where nothing is known of it.
+/// The motion to each scan of the log; nothing where none is known.
 using KnownMotions = std::vector<std::optional<Motion>>;
 
 KnownMotions from_poses(const Log& log, const std::string& path, const MotionOptions& options) {
@@ -91,7 +91,7 @@ std::vector<Motion> motions_for(const Log& log, const SelectionOptions& selectio
 
   const Motion nothing_known{Pose2{}, covariance_of(options.unknown_sigma_m, options.unknown_sigma_rad)};
   std::vector<Motion> motions;
-  std::optional<Motion> way;  // since the latest selected position
+  std::optional<Motion> way;  // motion since the last selected scan
   for (std::size_t i = 0; i < log.scans.size(); ++i) {
     if (known[i]) way = way ? compose(*way, *known[i]) : *known[i];
     if (i != index_in_whole_log(motions.size(), selection)) continue;

@@ -8,10 +8,10 @@
 #include "shapemap/io/log_selection.hpp"
 #include "slam_method.hpp"
 
-/// The odometry that a method is given: none, or what estimated poses say.
+/// A method is given the odometry of estimated poses, or none.
 namespace shapemap::baselines {
 
-/// How far a pose may be from where its motion leads, where no covariance is given.
+/// The uncertainty of motions for which no covariance is given.
 struct MotionOptions {
   double unknown_sigma_m = 0.60;
   double unknown_sigma_rad = 20 * kDegree;
@@ -33,13 +33,13 @@ struct MotionSources {
   std::string covariances_path;  ///< motions with covariances; empty: none. Its motions count where there are no poses
 };
 
-/// One motion for each position that `selection` leaves of `log`. A position without a pose counts as standing still,
-/// and the motion to the next one with a pose leads over it. Throws InputError, also for a line whose timestamp is not
-/// that of a position of the log, after those of the lines before it, and for one that might be of several.
+/// Returns one motion for each scan that `selection` leaves of `log`. A scan without a pose counts as standing still,
+/// and the motion to the next scan with a pose leads over it. Throws InputError, also for a line whose timestamp is not
+/// that of a scan of the log, after those of the lines before it, and for one that might be of several.
 std::vector<Motion> motions_for(const Log& log, const SelectionOptions& selection, const MotionSources& sources,
                                 const MotionOptions& options);
 
-/// Two motions one after the other.
+/// Composes two motions, one after the other.
 Motion compose(const Motion& first, const Motion& second);
 
 }  // namespace shapemap::baselines

@@ -12,7 +12,7 @@
 namespace shapemap::baselines {
 namespace {
 
-/// Of MRPT's icp-slam_demo_classic.ini.
+/// These are the settings of MRPT's icp-slam_demo_classic.ini.
 constexpr const char* kSettings = R"([ICP]
 ICP_algorithm = icpClassic
 maxIterations = 80
@@ -34,7 +34,7 @@ fuseWithExisting = false
 isPlanarMap = 1
 )";
 
-/// MRPT wants times that grow, and logs may repeat them; nothing else is done with them here.
+/// MRPT wants increasing times, and logs may repeat them; they have no other use here.
 mrpt::Clock::time_point time_of(std::size_t index) {
   return mrpt::Clock::fromDouble(1e6 + 0.1 * static_cast<double>(index));
 }
@@ -50,7 +50,7 @@ class MrptIcp : public SlamMethod {
     builder_.ICP_options.loadFromConfigFile(settings, "Map");
     builder_.ICP_options.insertionLinDistance = options.insertion_m;
     builder_.ICP_options.insertionAngDistance = options.insertion_rad;
-    // Every position shall have a pose of its own, however near it is to the one before.
+    // Every scan gets a pose of its own, however near it is to the one before.
     builder_.ICP_options.localizationLinDistance = 0.0;
     builder_.ICP_options.localizationAngDistance = 0.0;
     builder_.ICP_options.minICPgoodnessToAccept = options.min_goodness;
@@ -72,7 +72,7 @@ class MrptIcp : public SlamMethod {
   std::vector<Pose2> map_from_robot() const override { return poses_; }
 
  private:
-  /// All sub-scans together, so that a position is aligned as one; null when nothing was hit.
+  /// Puts all sweeps together, so that a scan is matched as one; null when there is no return.
   mrpt::obs::CObservationPointCloud::Ptr points_of(const Scan& scan) const {
     auto points = mrpt::maps::CSimplePointsMap::Create();
     for (const Sweep& sweep : scan.sweeps) {

@@ -26,7 +26,7 @@ struct IcpOptions {
   }
 };
 
-/// MRPT's CMetricMapBuilderICP: each scan is aligned by ICP to a map of the points of the scans before it.
+/// MRPT's CMetricMapBuilderICP matches each scan by ICP with a map of the points of the scans before it.
 std::unique_ptr<SlamMethod> make_mrpt_icp(const IcpOptions& options, const ReturnOptions& returns);
 
 }  // namespace shapemap::baselines

@@ -23,8 +23,8 @@
 namespace shapemap::baselines {
 namespace {
 
-/// Of MRPT's gridmapping_optimal_sampling.ini, except that all positions are used, and that beams without a return
-/// clear no space: whatever is no hit for shapemap has no return here, damaged readings too.
+/// These are the settings of MRPT's gridmapping_optimal_sampling.ini, except that all scans are used, and that beams
+/// without a return clear no space: readings that are no returns for shapemap are none here, damaged ones too.
 constexpr const char* kSettings = R"([Filter]
 PF_algorithm = 3
 adaptiveSampleSize = 0
@@ -58,7 +58,7 @@ LF_alternateAverageMethod = 0
 enableLikelihoodCache = 1
 )";
 
-/// Each particle has a map of its own, of a byte a cell and eight for likelihoods: 3.6 GB.
+/// Each particle has a map of its own, with a byte a cell and eight for likelihoods: 3.6 GB.
 constexpr double kMaxCells = 4e8;
 
 using Filter = mrpt::slam::CMetricMapBuilderRBPF;
@@ -77,8 +77,8 @@ Filter::TConstructionOptions settings_of(const RbpfOptions& options) {
   return construction;
 }
 
-/// MRPT's builder makes a covariance of its own for a movement in 2D and keeps that of one in 3D. What the motion says
-/// nothing of has next to no deviation, but some, so that the matrix stays regular.
+/// MRPT's builder makes a covariance of its own for a movement in 2D and keeps that of one in 3D. Coordinates that the
+/// motion lacks get next to no deviation, but some, so that the matrix stays regular.
 mrpt::obs::CActionRobotMovement3D action_of(const Motion& motion) {
   constexpr double kNone = 1e-12;
   const Pose2& pose = motion.previous_from_this;
@@ -126,7 +126,7 @@ class MrptRbpf : public SlamMethod {
     mrpt::obs::CSensoryFrame frame = frame_of(scan);
     const std::size_t length_before = path_length();
     filter_.processActionObservation(actions, frame);
-    // The filter waits with a scan that hit nothing, and adds its motion to the next one.
+    // The filter waits with a scan that has no return, and adds its motion to the next one.
     since_entry_ = path_length() > length_before ? Pose2{} : since_entry_ * way;
     entries_.push_back({path_length() - 1, since_entry_});
   }
@@ -143,7 +143,7 @@ class MrptRbpf : public SlamMethod {
   }
 
  private:
-  /// Where a position stands on the particles' paths.
+  /// An entry tells where a scan stands on the paths of the particles.
   struct Entry {
     std::size_t index = 0;
     Pose2 entry_from_this;
@@ -157,7 +157,7 @@ class MrptRbpf : public SlamMethod {
 
   std::size_t path_length() const { return filter_.mapPDF.m_particles.front().d->robotPath.size(); }
 
-  /// MRPT's maps grow to whatever a particle sees.
+  /// Checks the size, since MRPT's maps grow to whatever a particle sees.
   void check_size(const Pose2& way) const {
     double left_m = 0.0;
     double right_m = 0.0;

@@ -29,11 +29,11 @@ struct RbpfOptions {
   }
 };
 
-/// MRPT's CMetricMapBuilderRBPF: particles that are whole trajectories with a grid map each; of each particle's
-/// possible motions those are likely to be taken that go with the scan. The motions' covariances are its motion model.
-/// Scans of nearly the same place are passed over where motions are certain: many in a row make it too sure of itself,
-/// and take long. A position that was passed over is where its motion leads from the last that was not.
-/// MRPT's random numbers, which are global, begin anew with `seed`.
+/// MRPT's CMetricMapBuilderRBPF has particles that are whole trajectories with a grid map each; each particle samples
+/// the motions that make its scan likely. The covariances of the motions are its motion model. Scans of nearly the same
+/// place are skipped where motions are certain: many in a row make the filter too sure of itself, and take long. A
+/// skipped scan is where its motion leads from the last scan that was not. MRPT's random numbers, which are global,
+/// begin anew with `seed`.
 std::unique_ptr<SlamMethod> make_mrpt_rbpf(const RbpfOptions& options, int seed);
 
 }  // namespace shapemap::baselines

@@ -32,8 +32,8 @@ void check_paths(const Arguments& arguments) {
   }
 }
 
-/// What shapemap takes for no return is none for the other methods either. Beams that hit nothing can still be told
-/// from those whose reading means nothing, for the picture.
+/// Drops the readings that shapemap takes for no returns, so that the other methods see the same. Beams that hit
+/// nothing stay distinct from those whose reading means nothing, for the picture.
 void drop_non_returns(Log& log, const ReturnOptions& options) {
   for (Scan& scan : log.scans) {
     for (Sweep& sweep : scan.sweeps) {
@@ -46,7 +46,7 @@ void drop_non_returns(Log& log, const ReturnOptions& options) {
   }
 }
 
-/// The poses of the positions that were placed before an end of time or memory, in the frame of the first.
+/// Returns the poses of the scans that were placed before time or memory ended, in the frame of the first.
 std::vector<PlacedScan> place_all(const Log& log, const std::vector<Motion>& motions, const Arguments& arguments,
                                   std::vector<std::string>& warnings) {
   const std::unique_ptr<SlamMethod> method = make_method(arguments.method, arguments.settings);

@@ -11,7 +11,7 @@ namespace shapemap::baselines {
 
 std::unique_ptr<SlamMethod> make_method(BaselineMethod method, const BaselineSettings& settings);
 
-/// The whole program; returns the exit code, all failures are exceptions.
+/// Runs the whole program and returns the exit code; all failures are exceptions.
 int run_command_line(const std::vector<std::string>& typed);
 
 }  // namespace shapemap::baselines

@@ -10,13 +10,14 @@
 
 namespace shapemap::baselines {
 
-/// What odometry would say of the way to a position: from the one before it, and how sure that is.
+/// The motion to a scan from the one before it, as odometry would give it, and its uncertainty.
 struct Motion {
   Pose2 previous_from_this;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of x, y, heading, in the frame of the position before
+  /// covariance of (x, y, heading), in the frame of the scan before
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-/// The method cannot take another position; what it has placed so far stays good.
+/// The method cannot take another scan; its poses so far stay good.
 struct CannotGoOn : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -29,9 +30,9 @@ class SlamMethod {
   SlamMethod(const SlamMethod&) = delete;
   SlamMethod& operator=(const SlamMethod&) = delete;
 
-  /// `motion` is not looked at for the first position. Throws CannotGoOn.
+  /// Adds a scan; `motion` has no meaning for the first one. Throws CannotGoOn.
   virtual void add(const Scan& scan, const Motion& motion) = 0;
-  /// The poses of all positions so far, as they are believed now, in a frame of the method's own.
+  /// Returns the current estimates of all poses so far, in a frame of the method's own.
   virtual std::vector<Pose2> map_from_robot() const = 0;
 };
 

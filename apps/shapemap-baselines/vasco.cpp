@@ -10,12 +10,12 @@
 namespace shapemap::baselines {
 namespace {
 
-/// Logarithm of how likely a pose is before the scan is looked at, up to a constant.
+/// The log probability of a pose before the scan counts, up to a constant.
 class MotionPrior {
  public:
   MotionPrior(const Pose2& map_from_previous, const Motion& motion)
       : previous_from_map_(inverse(map_from_previous)), mean_(motion.previous_from_this) {
-    // Keeps certain motions invertible: a hundredth of a millimetre.
+    // A hundredth of a millimetre keeps certain motions invertible.
     information_ = (motion.covariance + 1e-10 * Eigen::Matrix3d::Identity()).inverse();
   }
 

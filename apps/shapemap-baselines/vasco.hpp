@@ -36,10 +36,10 @@ struct VascoOptions {
   }
 };
 
-/// Maximum likelihood, scan by scan, in the manner of CARMEN's vasco: the pose that makes the scan most likely given
-/// the map of the latest scans and the motion. See D. Haehnel, D. Schulz, W. Burgard, "Map building with mobile robots
-/// in populated environments", IROS 2002, and S. Thrun, W. Burgard, D. Fox, "A real-time algorithm for mobile robot
-/// mapping", ICRA 2000.
+/// Maximum likelihood, scan by scan, in the manner of CARMEN's vasco: the pose is the one that makes the scan most
+/// likely given the map of the latest scans and the motion. See D. Haehnel, D. Schulz, W. Burgard, "Map building with
+/// mobile robots in populated environments", IROS 2002, and S. Thrun, W. Burgard, D. Fox, "A real-time algorithm for
+/// mobile robot mapping", ICRA 2000.
 std::unique_ptr<SlamMethod> make_vasco(const VascoOptions& options, const ReturnOptions& returns);
 
 }  // namespace shapemap::baselines

@@ -16,7 +16,7 @@ constexpr const char* kExamples =
     "  shapemap-cli align intel.log.gz --gap 1 --out pairs.jsonl\n"
     "  shapemap-cli align monday.log tuesday.log --pairs pairs.txt --threads 4 --out -\n\n";
 
-/// Of what a map is made with, the options that aligning two positions looks at.
+/// Says whether matching two scans depends on the option.
 bool matters(const OptionEntry& entry) {
   const auto begins_with = [&](const char* text) { return entry.group.rfind(text, 0) == 0; };
   if (entry.group == "Chain") return entry.name == "threads";

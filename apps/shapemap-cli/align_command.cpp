@@ -36,9 +36,9 @@ std::vector<ScanPair> wanted_pairs(const AlignArguments& arguments, const Log& r
 Log with_straight_sweeps(Log log, const AlignArguments& arguments) {
   const MappingOptions& options = arguments.settings.mapping;
   ConsoleObserver observer(!arguments.quiet);
-  std::vector<SweepVerdict> verdicts;
   log = straightened(std::move(log), options.returns, options.deskew, arguments.settings.selection.every,
-                     options.run.threads, observer, verdicts);
+                     {options.run.threads, observer})
+            .log;
   observer.finish();
   log.warnings.insert(log.warnings.end(), observer.warnings().begin(), observer.warnings().end());
   return log;

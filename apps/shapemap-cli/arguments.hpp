@@ -8,7 +8,7 @@
 #include "option_table.hpp"
 #include "settings.hpp"
 
-/// What was typed, checked as far as that can be done without looking at the log.
+/// The arguments are checked as far as that can be done without reading the log.
 namespace shapemap::cli {
 
 enum class Verbosity { kQuiet, kNormal, kVerbose };
@@ -19,7 +19,7 @@ struct LogSource {
 };
 
 struct MapArguments {
-  std::vector<LogSource> logs;  ///< no file twice
+  std::vector<LogSource> logs;  ///< no file occurs twice
   std::string map_path;
   std::string trajectory_path;
   std::string motions_path;
@@ -30,7 +30,7 @@ struct MapArguments {
   std::string fragments_folder;
   std::string state_path;
   std::string config_path;  ///< has been applied to `settings`
-  bool resume = false;      ///< from `state_path`
+  bool resume = false;      ///< continues from `state_path`
   bool force = false;
   bool dump_config = false;  ///< print the options and do nothing else
   Verbosity verbosity = Verbosity::kNormal;
@@ -54,27 +54,27 @@ struct ConvertArguments {
 
 struct AlignArguments {
   std::string log_path;
-  std::string other_path;  ///< of the queries; empty: `log_path`
+  std::string other_path;  ///< log of the queries; empty: `log_path`
   LogFormat format = LogFormat::kAuto;
-  int gap = 0;  ///< 0: `pairs_path` says which pairs
+  int gap = 0;  ///< 0: `pairs_path` lists the pairs
   std::string pairs_path;
   std::string out_path;
   std::string config_path;  ///< has been applied to `settings`
   bool force = false;
   bool timings = false;
-  bool dump_config = false;  ///< print the options and do nothing else
+  bool dump_config = false;  ///< prints the options and does nothing else
   bool quiet = false;
   MapSettings settings;
 };
 
-/// `typed` is what comes after the program's name, or after the command's. Nothing is returned when help or the
-/// version was asked for and printed. All throw ConfigError for wrong usage.
+/// These functions parse the arguments after the program's name, or after the command's. They return nothing when help
+/// or the version was asked for and printed, and throw ConfigError for wrong usage.
 std::optional<MapArguments> parse_map_arguments(const std::vector<std::string>& typed);
 std::optional<InfoArguments> parse_info_arguments(const std::vector<std::string>& typed);
 std::optional<ConvertArguments> parse_convert_arguments(const std::vector<std::string>& typed);
 std::optional<AlignArguments> parse_align_arguments(const std::vector<std::string>& typed);
 
-/// The options of `settings` that aligning pairs looks at. The table must not outlive `settings`.
+/// Returns the options of `settings` that matching pairs depends on. The table must not outlive `settings`.
 OptionTable align_option_table(MapSettings& settings);
 
 }  // namespace shapemap::cli

@@ -3,7 +3,7 @@
 
 #include "arguments.hpp"
 
-/// What the program does. Each returns the exit code; all failures are exceptions.
+/// Each command returns the exit code; all failures are exceptions.
 namespace shapemap::cli {
 
 int run_map(const MapArguments& arguments);
@@ -11,7 +11,7 @@ int run_info(const InfoArguments& arguments);
 int run_convert(const ConvertArguments& arguments);
 int run_align(const AlignArguments& arguments);
 
-/// The command that `typed` (without the program's name) asks for.
+/// Runs the command that `typed` (without the program's name) asks for.
 int run_command_line(const std::vector<std::string>& typed);
 
 }  // namespace shapemap::cli

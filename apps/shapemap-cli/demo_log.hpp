@@ -5,7 +5,7 @@
 
 namespace shapemap::cli {
 
-/// The demo log: beside an installed program, else in the source tree it was built from. Throws InputError.
+/// Finds the demo log beside an installed program, or else in the source tree it was built from. Throws InputError.
 std::string demo_log_path();
 
 }  // namespace shapemap::cli

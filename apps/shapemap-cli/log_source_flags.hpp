@@ -9,11 +9,11 @@
 
 namespace shapemap::cli {
 
-/// The ways to name the logs to map. Must outlive the parsing.
+/// These flags name the logs to map. They must outlive the parsing.
 class LogSourceFlags {
  public:
   void add(CLI::App& app);
-  /// In the order in which they were typed. Throws ConfigError when there is none, or one twice.
+  /// Returns the logs in the order in which they were typed. Throws ConfigError when there is none, or one twice.
   std::vector<LogSource> take(const CLI::App& app, const std::vector<std::string>& typed) const;
 
  private:

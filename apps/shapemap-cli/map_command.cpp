@@ -51,16 +51,16 @@ MapRun map_with_progress(const LogSet& logs, const MapArguments& arguments, Trac
   return run;
 }
 
-/// From here on, the sweeps are as if all beams of one had been sent at once.
+/// Straightens the sweeps, which from here on are as if all beams of one had been sent at once.
 std::vector<SweepVerdict> straighten(const MapArguments& arguments, LogSet& logs, std::vector<std::string>& warnings) {
   const MappingOptions& options = arguments.settings.mapping;
   ConsoleObserver observer(arguments.verbosity != Verbosity::kQuiet);
-  std::vector<SweepVerdict> verdicts;
-  logs.log = straightened(std::move(logs.log), options.returns, options.deskew, arguments.settings.selection.every,
-                          options.run.threads, observer, verdicts);
+  StraightenedLog straight = straightened(std::move(logs.log), options.returns, options.deskew,
+                                          arguments.settings.selection.every, {options.run.threads, observer});
+  logs.log = std::move(straight.log);
   observer.finish();
   warnings.insert(warnings.end(), observer.warnings().begin(), observer.warnings().end());
-  return verdicts;
+  return straight.verdicts;
 }
 
 /// Maps the logs, and writes the trace meanwhile if one is wanted.
@@ -122,10 +122,10 @@ int run_map(const MapArguments& arguments) {
                      settings.grid, warnings, costs, settings.walls, run.notes.walls, run.notes.drawn, sweeps}));
   }
   outputs.commit(IfInterrupted::kWriteAll);
-  const bool was_interrupted = interrupted();  // what is told and the exit code say the same, whatever comes now
+  const bool was_interrupted = interrupted();  // what is printed and the exit code agree, whatever signal comes now
   if (was_interrupted && !result.interrupted) print_lines("", {"interrupted while writing; the map is whole"}, 1);
   print_sweeps(arguments, logs, sweeps);
-  print_summary(arguments, logs, result, run.notes, warnings, costs);
+  print_summary(arguments, logs, {result, run.notes, warnings, costs});
   return exit_code(logs, result, was_interrupted);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "map_outputs.hpp"
 
-#include "fragment_files.hpp"
+#include "component_files.hpp"
 #include "map_picture.hpp"
 #include "shapemap/io/map_files.hpp"
 #include "shapemap/io/trajectory_files.hpp"
@@ -9,25 +9,31 @@
 namespace shapemap::cli {
 namespace {
 
-/// The positions that have a pose, and only those.
-Log placed_log(const LogSet& logs, std::size_t which, const std::vector<PlacedScan>& placed, LogPoses& poses) {
+/// A part has the placed scans of one of the logs.
+struct PlacedPart {
+  std::size_t log;
+  const std::vector<PlacedScan>& scans;
+};
+
+/// Returns a log of the scans that have a pose, and only those.
+Log placed_log(const LogSet& logs, const PlacedPart& placed, LogPoses& poses) {
   Log part;
-  part.format = logs.files.at(which).format;
-  for (const PlacedScan& place : placed) {
+  part.format = logs.files.at(placed.log).format;
+  for (const PlacedScan& place : placed.scans) {
     part.scans.push_back(logs.log.scans.at(place.scan_index));
     poses.map_from_robot.push_back(place.map_from_robot);
   }
   return part;
 }
 
-void add_log(const std::string& to, LogFormat format, const LogSet& logs, std::size_t which,
-             const std::vector<PlacedScan>& placed, OutputSet& outputs) {
+void add_log(const std::string& to, LogFormat format, const LogSet& logs, const PlacedPart& placed,
+             OutputSet& outputs) {
   LogPoses poses;
-  const Log part = placed_log(logs, which, placed, poses);
+  const Log part = placed_log(logs, placed, poses);
   outputs.add(to, [&](const std::string& path) { write_log(part, path, format, &poses); });
 }
 
-/// Calls `add(which log, path, its placed positions)` for each log, if `path` was given.
+/// Calls `add(log index, path, placed scans of the log)` for each log, if `path` was given.
 template <class Add>
 void for_each_log(const std::string& path, const MapArguments& arguments, const LogSet& logs, const MapResult& result,
                   const Add& add) {
@@ -87,10 +93,10 @@ std::vector<DrawnComponent> prepare_outputs(const MapArguments& arguments, const
     for_each_log(path, arguments, logs, result, add);
   };
   for_each(arguments.carmen_path, [&](std::size_t which, const std::string& path, const auto& part) {
-    add_log(path, LogFormat::kCarmen, logs, which, part, outputs);
+    add_log(path, LogFormat::kCarmen, logs, {which, part}, outputs);
   });
   for_each(arguments.rawlog_path, [&](std::size_t which, const std::string& path, const auto& part) {
-    add_log(path, LogFormat::kRawlog, logs, which, part, outputs);
+    add_log(path, LogFormat::kRawlog, logs, {which, part}, outputs);
   });
   for_each(arguments.trajectory_path, [&](std::size_t, const std::string& path, const auto& part) {
     outputs.add_text(path, tum_trajectory(part));
@@ -98,7 +104,7 @@ std::vector<DrawnComponent> prepare_outputs(const MapArguments& arguments, const
   for_each(arguments.motions_path, [&](std::size_t, const std::string& path, const auto& part) {
     outputs.add_text(path, motion_lines(motions_of(result, part)));
   });
-  if (!arguments.fragments_folder.empty()) add_fragments(arguments, logs, result, outputs, drawn);
+  if (!arguments.fragments_folder.empty()) add_component_files(arguments, logs, result, outputs, drawn);
   return drawn;
 }
 

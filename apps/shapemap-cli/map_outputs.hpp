@@ -12,20 +12,20 @@
 
 namespace shapemap::cli {
 
-/// What was asked for that each log gets for itself: the option and its path.
+/// Returns the outputs that each log gets for itself: the option and its path.
 std::vector<std::pair<const char*, std::string>> per_log_outputs(const MapArguments& arguments);
 
-/// All files of a run with `arguments`, but for those of --fragments and --save-state.
+/// Returns all files of a run with `arguments`, but for those of --fragments and --save-state.
 std::vector<std::string> output_paths(const MapArguments& arguments);
 
-/// The files that a run with `arguments` reads.
+/// Returns the files that a run with `arguments` reads.
 std::vector<std::string> input_paths(const MapArguments& arguments);
 
-/// Whether all that a run with `arguments` writes could be written. Throws ConfigError and OutputError.
+/// Checks that all outputs of a run with `arguments` can be written. Throws ConfigError and OutputError.
 void check_output_paths(const MapArguments& arguments);
 
-/// Draws the map and prepares the files that were asked for, except the trace, which is
-/// written while mapping, and the report, which is made last. Says what the pictures show.
+/// Draws the map and prepares the files that were asked for, except the trace, which is written while mapping, and the
+/// report, which is made last. Returns what the pictures show.
 std::vector<DrawnComponent> prepare_outputs(const MapArguments& arguments, const LogSet& logs, const MapResult& result,
                                             OutputSet& outputs);
 

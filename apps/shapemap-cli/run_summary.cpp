@@ -13,13 +13,13 @@ std::string counted(std::size_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-/// Whether an alignment to the positions before is behind its place; not so at the start of a log.
-bool is_chained(const ScanResult& scan) {
+/// Says whether a match with an earlier scan placed the scan; at the start of a session there is none.
+bool is_placed_by_match(const ScanResult& scan) {
   return scan.component >= 0 && !scan.starts_component && !scan.is_without_shape();
 }
 
-/// What makes the map though its alignment is in doubt.
-bool is_doubtful(const ScanResult& scan) { return is_chained(scan) && !scan.is_sure(); }
+/// Says whether a scan is in the map although its match is in doubt.
+bool is_doubtful(const ScanResult& scan) { return is_placed_by_match(scan) && !scan.is_sure(); }
 
 bool is_uncertain(const ScanResult& scan) { return is_doubtful(scan) && !scan.loop_constrained; }
 
@@ -39,7 +39,7 @@ void print_uncertain(const MapResult& result) {
   std::size_t ambiguous = 0;
   std::size_t degenerate = 0;
   for (const ScanResult& scan : result.scans) {
-    if (is_chained(scan)) ++aligned;
+    if (is_placed_by_match(scan)) ++aligned;
     if (is_doubtful(scan) && scan.loop_constrained) ++held;
     if (!is_uncertain(scan)) continue;
     const MatchStatus status = scan.match.status;
@@ -56,7 +56,7 @@ void print_uncertain(const MapResult& result) {
   print_line(text);
 }
 
-/// "positions 3, 5, 8", or of several logs "a.log positions 3, 5; b.log positions 0".
+/// Returns "positions 3, 5, 8", or of several logs "a.log positions 3, 5; b.log positions 0".
 std::string contradicting_text(const LogSet& logs, const std::vector<std::size_t>& indices) {
   std::string text;
   std::size_t last_log = logs.files.size();
@@ -87,7 +87,7 @@ void print_contradicting(const LogSet& logs, const MapResult& result, std::size_
   print_line(text, std::string::npos);  // a long list is what was asked for
 }
 
-/// "positions 3 to 8 of a.log, 0 to 4 of b.log"
+/// Returns "positions 3 to 8 of a.log, 0 to 4 of b.log".
 std::string component_text(const LogSet& logs, const std::vector<PlacedScan>& scans) {
   std::string text;
   for (const LogPart& part : parts_of(logs.log)) {
@@ -109,7 +109,7 @@ std::vector<std::string> component_lines(const LogSet& logs, const MapResult& re
   return lines;
 }
 
-/// Of several logs, each; a robot that is nowhere on the map must not be overlooked.
+/// Prints a line for each of several logs, so that a robot that is nowhere on the map is not overlooked.
 void print_logs(const LogSet& logs, const MapResult& result) {
   if (logs.is_one()) return;
   const std::vector<LogPart> parts = parts_of(logs.log);
@@ -153,7 +153,7 @@ void print_walls(const MapNotes& notes, const MapResult& result) {
   } else {
     std::snprintf(text, sizeof text,
                   "not turned: no direction of walls dominates (the best has %.0f %% of them, another %.0f %%)",
-                  100.0 * walls.share, 100.0 * walls.rival_share);
+                  100.0 * walls.share, 100.0 * walls.second_share);
   }
   print_line(text);
 }
@@ -212,8 +212,8 @@ void print_interrupted(const LogSet& logs, const MapResult& result) {
   print_line("interrupted " + where + "; writing the map so far (once more: leave at once, with nothing written)");
 }
 
-void print_summary(const MapArguments& arguments, const LogSet& logs, const MapResult& result, const MapNotes& notes,
-                   const std::vector<std::string>& warnings, const RunCosts& costs) {
+void print_summary(const MapArguments& arguments, const LogSet& logs, const RunOutcome& outcome) {
+  const auto& [result, notes, warnings, costs] = outcome;
   if (arguments.verbosity == Verbosity::kQuiet) return;
   const bool verbose = arguments.verbosity == Verbosity::kVerbose;
   const std::size_t max_listed = verbose ? static_cast<std::size_t>(-1) : kMaxListed;

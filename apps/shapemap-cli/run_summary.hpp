@@ -9,26 +9,33 @@
 #include "shapemap/deskew/deskew.hpp"
 #include "shapemap/io/report.hpp"
 
-/// What a run says about itself on the console.
+/// These functions print the results of a run on the console.
 namespace shapemap::cli {
 
-/// What is said of a map beside where its positions are.
+/// Notes on a map beside the poses.
 struct MapNotes {
-  std::vector<WallDirection> walls;   ///< of each fragment; empty when they were not asked for
-  std::vector<DrawnComponent> drawn;  ///< the map's first
+  std::vector<WallDirection> walls;   ///< one for each component; empty when walls were not aligned
+  std::vector<DrawnComponent> drawn;  ///< the map comes first
 };
 
-/// Positions that have no place in the map.
+/// The results of a run that the summary tells.
+struct RunOutcome {
+  const MapResult& result;
+  const MapNotes& notes;
+  const std::vector<std::string>& warnings;
+  const RunCosts& costs;
+};
+
+/// Returns a line for each scan that has no place in the map.
 std::vector<std::string> unplaced_lines(const LogSet& logs, const MapResult& result);
 
-/// What was done about bent sweeps.
+/// Prints what was done about bent sweeps.
 void print_sweeps(const MapArguments& arguments, const LogSet& logs, const std::vector<SweepVerdict>& sweeps);
 
-/// After mapping, before the map is written.
+/// Prints after mapping, before the map is written.
 void print_interrupted(const LogSet& logs, const MapResult& result);
 
-/// All of it, once the map is written.
-void print_summary(const MapArguments& arguments, const LogSet& logs, const MapResult& result, const MapNotes& notes,
-                   const std::vector<std::string>& warnings, const RunCosts& costs);
+/// Prints the whole summary once the map is written.
+void print_summary(const MapArguments& arguments, const LogSet& logs, const RunOutcome& outcome);
 
 }  // namespace shapemap::cli

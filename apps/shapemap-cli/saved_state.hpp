@@ -6,17 +6,17 @@
 #include "arguments.hpp"
 #include "shapemap/io/match_cache_file.hpp"
 
-/// --save-state and --resume: what was aligned survives the end of the run.
+/// With --save-state and --resume, matches survive the end of a run.
 namespace shapemap::cli {
 
-/// Finds out before the log is read what opening would find out later.
+/// Finds out before the log is read what opening the state would find out later.
 void check_state(const MapArguments& arguments);
 
-/// Null when no state is wanted. Adds to `warnings` what is wrong with the file.
+/// Opens the state; null when none is wanted. Adds to `warnings` what is wrong with the file.
 std::unique_ptr<MatchCacheFile> open_state(const MapArguments& arguments, const Log& log,
                                            std::vector<std::string>& warnings);
 
-/// How much of the work the state had; nothing is printed unless the run was resumed.
+/// Prints how much of the work the state had, if the run was resumed.
 void print_resumed(const MapArguments& arguments, const MatchCacheFile* state);
 
 }  // namespace shapemap::cli

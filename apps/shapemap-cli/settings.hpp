@@ -18,7 +18,7 @@ struct DrawOptions {
   }
 };
 
-/// All that the options file holds: what is read from where and written to where is not part of it.
+/// The options file holds these settings, but no paths of inputs and outputs.
 struct MapSettings {
   LogReadOptions reading;
   SelectionOptions selection;

@@ -12,7 +12,8 @@ namespace shapemap::cli {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r";
-constexpr std::string_view kEscapes = "b\bt\tn\nf\fr\r\"\"\\\\";  // pairs: letter after the backslash, character
+// pairs of the letter after the backslash and its character
+constexpr std::string_view kEscapes = "b\bt\tn\nf\fr\r\"\"\\\\";
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kBlank);
@@ -40,7 +41,7 @@ char unescaped(std::string_view text, std::size_t& at) {
   throw ConfigError(std::string("unknown escape '\\") + text[at] + "' in a string");
 }
 
-/// The string that `text` starts with; `rest` is what comes after its closing quote.
+/// Returns the string that `text` starts with; `rest` is what comes after its closing quote.
 std::string quoted_string(std::string_view text, std::string_view& rest) {
   const char quote = text.front();
   std::string value;

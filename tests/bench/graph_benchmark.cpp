@@ -40,7 +40,7 @@ void BM_SolvePoseGraph(benchmark::State& state) {
   std::mt19937 rng(1);
   const auto count = static_cast<std::size_t>(state.range(0));
   const std::vector<Pose2> truth = test::random_walk(rng, count);
-  const std::vector<PoseConstraint> constraints = test::chain_with_loops(truth, count / 5, 0.02, rng);
+  const std::vector<PoseConstraint> constraints = test::odometry_and_loops(truth, count / 5, 0.02, rng);
   std::vector<Pose2> start = truth;
   for (std::size_t n = 1; n < count; ++n) start[n] = start[n] * test::random_pose(rng, 0.1, 0.03);
   for (auto _ : state) benchmark::DoNotOptimize(solve_pose_graph(start, constraints));

@@ -8,7 +8,7 @@
 
 #include "support/synthetic_world.hpp"
 
-/// What a rolling laser sees that is moved while it goes round.
+/// A rolling laser that moves while it goes round takes bent sweeps.
 namespace shapemap::test {
 
 using Motion = std::function<Pose2(double time_s)>;
@@ -17,7 +17,7 @@ struct RollingLaser {
   int num_beams = 120;
   double view_rad = 2 * kPi;
   double period_s = 0.1;
-  double sweep_share = 1.0;  ///< of its period that a sweep takes
+  double sweep_share = 1.0;  ///< share of its period that a sweep takes
   bool clockwise = false;
   double noise_m = 0.0;
   double max_range_m = 20.0;
@@ -25,12 +25,12 @@ struct RollingLaser {
   double beam_step_s() const { return sweep_share * period_s / num_beams; }
 };
 
-/// Swinging about its heading by `yaw_rad` once a second, and walking along x.
+/// The laser swings about its heading by `yaw_rad` once a second, and walks along x.
 inline Motion swinging(double yaw_rad, double speed_m_s = 0.0) {
   return [=](double time_s) { return Pose2{speed_m_s * time_s, 0.0, yaw_rad * std::sin(2 * kPi * time_s)}; };
 }
 
-/// One sweep, each of its beams sent from where the laser was at that time.
+/// Takes one sweep; each of its beams is sent from the pose of the laser at that time.
 inline Scan bent_sweep(const World& world, const Motion& world_from_laser, double start_s, const RollingLaser& laser,
                        std::mt19937& rng) {
   std::normal_distribution<double> noise(0.0, 1.0);
@@ -50,7 +50,7 @@ inline Scan bent_sweep(const World& world, const Motion& world_from_laser, doubl
   return scan;
 }
 
-/// Sweeps that follow each other, and the true poses at their starts as references.
+/// Takes sweeps that follow each other, with the true poses at their starts as references.
 inline Log bent_log(const World& world, const Motion& world_from_laser, std::size_t num, const RollingLaser& laser = {},
                     unsigned seed = 1) {
   std::mt19937 rng(seed);
@@ -63,7 +63,7 @@ inline Log bent_log(const World& world, const Motion& world_from_laser, std::siz
   return log;
 }
 
-/// The root mean square of how far hits are from the walls, each sweep seen from its true pose.
+/// Returns the root mean square distance of returns from the walls, each sweep seen from its true pose.
 inline double off_the_walls_m(const Log& log, const World& world) {
   double squares_m2 = 0.0;
   std::size_t num = 0;

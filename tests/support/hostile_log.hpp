@@ -12,18 +12,18 @@
 #include "shapemap/io/log_file.hpp"
 #include "shapemap/mapper/map_log.hpp"
 
-/// What is done with logs that may hold anything.
+/// Logs that may hold anything are read and mapped here.
 namespace shapemap::test {
 
 enum class Outcome { kMapped, kRefused };
 
-/// Reads the file, straightens the sweeps of its first positions and maps three of them. Whatever it holds, this ends
-/// with a result or an InputError; all else is a fault.
+/// Reads the file, straightens the sweeps of its first scans and maps three of them. Whatever it holds, this ends with
+/// a result or an InputError; all else is a fault.
 inline Outcome read_and_map(const std::string& path) {
   constexpr std::size_t kStraightened = 8;
   constexpr std::size_t kFirst = 3;
   LogReadOptions reading;
-  reading.fov_rad = kPi;  // which bare numbers need
+  reading.fov_rad = kPi;  // bare numbers need it
   try {
     Log log = read_log(path, LogFormat::kAuto, reading);
     summarise(log);
@@ -31,8 +31,7 @@ inline Outcome read_and_map(const std::string& path) {
     MappingOptions options;
     options.run.threads = 1;
     RunObserver observer;
-    std::vector<SweepVerdict> verdicts;
-    log = straightened(std::move(log), options.returns, options.deskew, 1, 1, observer, verdicts);
+    log = straightened(std::move(log), options.returns, options.deskew, 1, {1, observer}).log;
     log.scans.resize(std::min(log.scans.size(), kFirst));
     map_log(log, options, observer);
     return Outcome::kMapped;

@@ -14,7 +14,7 @@
 
 namespace shapemap::test {
 
-/// What reading `path` says that is wrong with it; "" when it can be read.
+/// Returns the error of reading `path`, or "" when it can be read.
 inline std::string input_error(const std::string& path, LogFormat format = LogFormat::kAuto,
                                const LogReadOptions& options = {}) {
   try {
@@ -25,8 +25,8 @@ inline std::string input_error(const std::string& path, LogFormat format = LogFo
   }
 }
 
-/// A scan whose readings are all different, with two that hit nothing.
-inline Sweep make_scan(std::size_t num_beams, double first_angle_rad, double angle_step_rad) {
+/// Makes a sweep whose readings are all different, with two that hit nothing.
+inline Sweep make_sweep(std::size_t num_beams, double first_angle_rad, double angle_step_rad) {
   Sweep sweep;
   sweep.first_angle_rad = first_angle_rad;
   sweep.angle_step_rad = angle_step_rad;
@@ -38,11 +38,11 @@ inline Sweep make_scan(std::size_t num_beams, double first_angle_rad, double ang
   return sweep;
 }
 
-/// Expects the same positions, times and points in the robot's frame.
+/// Expects the same scans, times and points in the robot's frame.
 inline void expect_same_points(const Log& a, const Log& b, double tolerance_m) {
   ASSERT_EQ(a.scans.size(), b.scans.size());
   for (std::size_t i = 0; i < a.scans.size(); ++i) {
-    SCOPED_TRACE("position " + std::to_string(i));
+    SCOPED_TRACE("scan " + std::to_string(i));
     const Scan& p = a.scans[i];
     const Scan& q = b.scans[i];
     // MRPT counts time in units of 100 ns.

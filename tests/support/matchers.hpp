@@ -24,7 +24,7 @@ MATCHER_P3(IsNearPose, expected, tolerance_m, tolerance_rad, "") {
   return off_m <= tolerance_m && off_rad <= tolerance_rad;
 }
 
-/// The same direction, whatever the number of full turns.
+/// Matches the same direction, whatever the number of full turns.
 MATCHER_P2(IsNearAngle, expected_rad, tolerance_rad, "") {
   const double off_rad = angle_between(arg, expected_rad);
   *result_listener << arg / kDegree << " deg is " << off_rad / kDegree << " deg off";
@@ -33,7 +33,7 @@ MATCHER_P2(IsNearAngle, expected_rad, tolerance_rad, "") {
 
 MATCHER(IsNanPose, "") { return std::isnan(arg.x_m) && std::isnan(arg.y_m) && std::isnan(arg.theta_rad); }
 
-/// Equal to the last bit; unlike ==, also for NaN.
+/// Matches equal bits; unlike ==, also for NaN.
 MATCHER_P(HasSameBits, expected, "") {
   return std::memcmp(&arg.x_m, &expected.x_m, sizeof(double)) == 0 &&
          std::memcmp(&arg.y_m, &expected.y_m, sizeof(double)) == 0 &&

@@ -7,7 +7,7 @@
 
 namespace shapemap::test {
 
-/// Says yes until it has been asked `times` times.
+/// This observer lets a run go on until it has been asked `times` times.
 struct Patience : RunObserver {
   explicit Patience(std::size_t times) : left(times) {}
   bool keep_going() override {

@@ -7,7 +7,7 @@
 #include "shapemap/mapper/map_result.hpp"
 #include "support/synthetic_world.hpp"
 
-/// A log with the poses that it was simulated with.
+/// A simulated log comes with its true poses.
 namespace shapemap::test {
 
 struct PlacedLog {
@@ -21,22 +21,26 @@ struct PlacedLog {
   }
 };
 
-/// Scans on the way from `first` to `last`, evenly spaced, all with the heading of `first`.
-inline void add_walk(PlacedLog& walk, const World& world, const Pose2& first, const Point2& last, int num_scans,
-                     const Scanner& scanner, std::mt19937& rng) {
-  for (int i = 0; i < num_scans; ++i) {
-    const double share = num_scans > 1 ? static_cast<double>(i) / (num_scans - 1) : 0.0;
-    const Point2 at_m = first.translation() + share * (last - first.translation());
-    const Pose2 pose{at_m.x(), at_m.y(), first.theta_rad};
+/// A leg is a straight walk of evenly spaced scans, all with the heading of `first`.
+struct Leg {
+  Pose2 first;
+  Point2 last_m;
+  int num_scans = 2;
+};
+
+inline void add_walk(PlacedLog& walk, const World& world, const Leg& leg, const Scanner& scanner, std::mt19937& rng) {
+  for (int i = 0; i < leg.num_scans; ++i) {
+    const double share = leg.num_scans > 1 ? static_cast<double>(i) / (leg.num_scans - 1) : 0.0;
+    const Point2 at_m = leg.first.translation() + share * (leg.last_m - leg.first.translation());
+    const Pose2 pose{at_m.x(), at_m.y(), leg.first.theta_rad};
     walk.add(scan_of(world, pose, scanner, rng), pose);
   }
 }
 
-inline PlacedLog walk_through(const World& world, const Pose2& first, const Point2& last, int num_scans,
-                              const Scanner& scanner = {}, unsigned seed = 1) {
+inline PlacedLog walk_through(const World& world, const Leg& leg, const Scanner& scanner = {}, unsigned seed = 1) {
   PlacedLog walk;
   std::mt19937 rng(seed);
-  add_walk(walk, world, first, last, num_scans, scanner, rng);
+  add_walk(walk, world, leg, scanner, rng);
   return walk;
 }
 

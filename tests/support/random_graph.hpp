@@ -8,7 +8,7 @@
 
 #include "shapemap/graph/pose_graph.hpp"
 
-/// Pose graphs drawn at random.
+/// These pose graphs are drawn at random.
 namespace shapemap::test {
 
 inline Pose2 random_pose(std::mt19937& rng, double reach_m, double reach_rad) {
@@ -18,7 +18,7 @@ inline Pose2 random_pose(std::mt19937& rng, double reach_m, double reach_rad) {
   return {x_m, y_m, reach_rad * unit(rng)};
 }
 
-/// Standard deviations between 0.02 and 0.2, and correlated.
+/// The standard deviations are between 0.02 and 0.2, and correlated.
 inline Eigen::Matrix3d random_covariance(std::mt19937& rng) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   Eigen::Matrix3d root;
@@ -26,22 +26,22 @@ inline Eigen::Matrix3d random_covariance(std::mt19937& rng) {
   return root * root.transpose() + 4e-4 * Eigen::Matrix3d::Identity();
 }
 
-/// A walk of `num_nodes` about a place.
+/// Walks `num_nodes` steps about a place.
 inline std::vector<Pose2> random_walk(std::mt19937& rng, std::size_t num_nodes) {
   std::vector<Pose2> poses{random_pose(rng, 5.0, kPi)};
   while (poses.size() < num_nodes) poses.push_back(poses.back() * random_pose(rng, 1.5, 1.0));
   return poses;
 }
 
-/// What `truth` says of two of its nodes, off by a random error of the size `error`.
+/// Measures the relative pose of two nodes of `truth`, with a random error of the size `error`.
 inline PoseConstraint measured(const std::vector<Pose2>& truth, std::size_t a, std::size_t b, double error,
                                std::mt19937& rng) {
   return {a, b, inverse(truth[a]) * truth[b] * random_pose(rng, error, error), random_covariance(rng), 0.0};
 }
 
-/// A chain along all nodes, and `num_loops` more constraints between any two of them.
-inline std::vector<PoseConstraint> chain_with_loops(const std::vector<Pose2>& truth, std::size_t num_loops,
-                                                    double error, std::mt19937& rng) {
+/// Returns constraints between successive nodes, and `num_loops` more between any two of them.
+inline std::vector<PoseConstraint> odometry_and_loops(const std::vector<Pose2>& truth, std::size_t num_loops,
+                                                      double error, std::mt19937& rng) {
   std::vector<PoseConstraint> constraints;
   for (std::size_t i = 0; i + 1 < truth.size(); ++i) constraints.push_back(measured(truth, i, i + 1, error, rng));
   std::uniform_int_distribution<std::size_t> any(0, truth.size() - 1);
@@ -53,7 +53,7 @@ inline std::vector<PoseConstraint> chain_with_loops(const std::vector<Pose2>& tr
   return constraints;
 }
 
-/// What an odometer would make of the chain at the head of `constraints`.
+/// Composes the constraints between successive nodes at the head of `constraints`.
 inline std::vector<Pose2> dead_reckoning(const std::vector<PoseConstraint>& constraints, std::size_t num_nodes,
                                          const Pose2& first) {
   std::vector<Pose2> poses{first};

@@ -12,7 +12,7 @@
 #include "shapemap/scan/scan.hpp"
 #include "support/ring_walk.hpp"
 
-/// A log of a robot that goes round and round a ring, and chains that follow it.
+/// A robot goes round and round a ring; this header has its log, and keyframe graphs of it.
 namespace shapemap::test {
 
 inline MappingOptions quick_mapping() {
@@ -42,7 +42,7 @@ inline const Laps& two_laps() {
   return laps;
 }
 
-/// A chain in which each keyframe is where `poses` have it, each link sure, and the map that follows.
+/// The graph has its keyframes at `poses` and sure odometry edges; the map follows from it.
 struct KnownGraph {
   KnownGraph(const Laps& laps, const std::vector<Pose2>& poses) {
     const MappingOptions options = quick_mapping();

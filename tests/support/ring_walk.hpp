@@ -10,16 +10,16 @@
 #include "support/random_graph.hpp"
 #include "support/views.hpp"
 
-/// A corridor that runs round in a ring, and a robot that walks along it until it knows the place again.
+/// A robot walks along a corridor that runs round in a ring, until it is back at the first place.
 namespace shapemap::test {
 
-inline constexpr double kRingHalfX_m = 6.0;  // of the way along its middle
+inline constexpr double kRingHalfX_m = 6.0;  // half of the path along its middle
 inline constexpr double kRingHalfY_m = 4.0;
 inline constexpr double kRingLength_m = 4 * (kRingHalfX_m + kRingHalfY_m);
 inline constexpr double kRingStep_m = 0.8;
-inline constexpr std::size_t kRingLap = 50;  // steps
+inline constexpr std::size_t kRingLap = 50;  // in steps
 
-/// `along_m` from the corner at the lower left, counterclockwise, facing ahead.
+/// Returns the pose at `along_m` from the corner at the lower left, counterclockwise, facing ahead.
 inline Pose2 on_ring(double along_m) {
   double left_m = std::fmod(along_m, kRingLength_m);
   Pose2 corner{-kRingHalfX_m, -kRingHalfY_m, 0.0};
@@ -32,7 +32,7 @@ inline Pose2 on_ring(double along_m) {
   return corner;
 }
 
-/// The walls of the corridor, 2.4 m apart, and boxes along them: nowhere does it look as elsewhere.
+/// Builds the walls of the corridor, 2.4 m apart, and boxes along them, so that no two places look the same.
 inline World ring_world(unsigned seed) {
   World world;
   add_box(world, {}, kRingHalfX_m + 1.2, kRingHalfY_m + 1.2);
@@ -49,7 +49,7 @@ inline World ring_world(unsigned seed) {
   return world;
 }
 
-/// The robot sways, and looks about.
+/// The robot sways, and turns its head.
 inline std::vector<Pose2> ring_walk(std::size_t count, unsigned seed, double from_m = 0.0) {
   std::mt19937 rng(seed);
   std::vector<Pose2> poses;
@@ -73,7 +73,7 @@ inline Eigen::Matrix3d covariance_of(double deviation_m, double deviation_rad) {
   return Eigen::Vector3d(area, area, deviation_rad * deviation_rad).asDiagonal();
 }
 
-/// The chain that a robot makes that errs by `drift_rad` to the left at each step.
+/// Returns the odometry edges of a robot that errs by `drift_rad` to the left at each step.
 inline std::vector<EdgeChoices> drifting_edges(const std::vector<Pose2>& truth, double drift_rad, unsigned seed = 3) {
   std::mt19937 rng(seed);
   std::vector<EdgeChoices> edges(truth.size() - 1);
@@ -85,9 +85,17 @@ inline std::vector<EdgeChoices> drifting_edges(const std::vector<Pose2>& truth, 
   return edges;
 }
 
-/// Nodes `a`, `a` + 1, ... to nodes `b`, `b` + 1, ..., at the places that `truth` has moved by `wrong`.
-inline LoopCluster cluster_of(const std::vector<Pose2>& truth, std::size_t a, std::size_t b, std::size_t count,
-                              double strength, const Pose2& wrong = {}) {
+/// The runs are the nodes a, a + 1, ... and b, b + 1, ..., so many of each.
+struct NodeRuns {
+  std::size_t a;
+  std::size_t b;
+  std::size_t count;
+};
+
+/// Closes a loop between two runs of nodes, at poses that `wrong` moves from `truth`.
+inline LoopCluster cluster_of(const std::vector<Pose2>& truth, const NodeRuns& runs, double strength,
+                              const Pose2& wrong = {}) {
+  const auto [a, b, count] = runs;
   std::mt19937 rng(4);
   LoopCluster cluster;
   for (std::size_t k = 0; k < count; ++k) {
@@ -100,7 +108,7 @@ inline LoopCluster cluster_of(const std::vector<Pose2>& truth, std::size_t a, st
   return cluster;
 }
 
-/// Largest distance of a node from where it is in truth, when both maps have node `first` at the same place.
+/// Returns the largest distance of a node from its true place, when both maps have node `first` at the same place.
 inline double worst_off_m(const std::vector<Pose2>& map_from_node, const std::vector<Pose2>& truth, std::size_t first,
                           std::size_t last) {
   const Pose2 truth_from_map = truth[first] * inverse(map_from_node[first]);
@@ -115,8 +123,8 @@ inline double worst_off_m(const std::vector<Pose2>& map_from_node, const std::ve
   return worst_off_m(map_from_node, truth, 0, truth.size());
 }
 
-/// Node after node by the first alternatives of `links`.
-inline std::vector<Pose2> chained(const std::vector<EdgeChoices>& edges, const Pose2& first = {}) {
+/// Composes the first candidates of `edges`.
+inline std::vector<Pose2> dead_reckoning(const std::vector<EdgeChoices>& edges, const Pose2& first = {}) {
   std::vector<Pose2> poses{first};
   for (const EdgeChoices& edge : edges) poses.push_back(poses.back() * edge.candidates.front().a_from_b);
   return poses;

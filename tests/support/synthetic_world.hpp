@@ -12,7 +12,7 @@
 #include "shapemap/scan/scan.hpp"
 #include "shapemap/shape/shape.hpp"
 
-/// Rooms made of straight walls, and scans of them from known poses.
+/// Rooms are made of straight walls, and scanned from known poses.
 namespace shapemap::test {
 
 struct Wall {
@@ -26,13 +26,13 @@ inline void add_polygon(World& world, const std::vector<Point2>& corners) {
   for (std::size_t i = 0; i < corners.size(); ++i) world.push_back({corners[i], corners[(i + 1) % corners.size()]});
 }
 
-/// A box of the given half lengths, turned about its centre.
+/// Adds a box of the given half lengths, turned about its centre.
 inline void add_box(World& world, const Pose2& world_from_box, double half_x_m, double half_y_m) {
   add_polygon(world, {world_from_box * Point2(-half_x_m, -half_y_m), world_from_box * Point2(half_x_m, -half_y_m),
                       world_from_box * Point2(half_x_m, half_y_m), world_from_box * Point2(-half_x_m, half_y_m)});
 }
 
-/// A room without symmetry, about 8 m by 6 m, around the origin.
+/// Builds a room without symmetry, about 8 m by 6 m, around the origin.
 inline World uneven_room() {
   World world;
   add_polygon(world, {{-4.0, -3.0},
@@ -49,7 +49,7 @@ inline World uneven_room() {
   return world;
 }
 
-/// The room with boxes strewn along a ring about its middle, which stays free for the robot.
+/// Builds the room with boxes strewn along a ring about its middle, which stays free for the robot.
 inline World cluttered_room(unsigned seed, int num_boxes = 8) {
   World world = uneven_room();
   std::mt19937 rng(seed);
@@ -65,7 +65,7 @@ inline World cluttered_room(unsigned seed, int num_boxes = 8) {
   return world;
 }
 
-/// Distance from `from_m` along a direction to the first wall; infinity when there is none.
+/// Returns the distance from `from_m` along a direction to the first wall; infinity when there is none.
 inline double cast_ray_m(const World& world, const Point2& from_m, double angle_rad) {
   const Point2 d(std::cos(angle_rad), std::sin(angle_rad));
   double nearest_m = std::numeric_limits<double>::infinity();
@@ -87,16 +87,16 @@ inline double distance_to_walls_m(const World& world, const Point2& p_m) {
   return nearest_m;
 }
 
-/// How the scans are taken.
+/// The sensor that takes the scans.
 struct Scanner {
-  int num_beams = 720;        ///< of one sub-scan
-  double view_rad = 2 * kPi;  ///< of one sub-scan
+  int num_beams = 720;        ///< beams of one sweep
+  double view_rad = 2 * kPi;  ///< field of view of one sweep
   double noise_m = 0.0;       ///< standard deviation of a range
   int num_sweeps = 1;         ///< spread evenly over a full turn
   double max_range_m = 20.0;
 };
 
-/// What the scanner sees from `world_from_robot`.
+/// Scans the world from `world_from_robot`.
 inline Scan scan_of(const World& world, const Pose2& world_from_robot, const Scanner& scanner, std::mt19937& rng) {
   std::normal_distribution<double> noise(0.0, 1.0);
   Scan scan;
@@ -123,7 +123,7 @@ inline Scan scan_of(const World& world, const Pose2& world_from_robot, const Sca
   return scan_of(world, world_from_robot, scanner, rng);
 }
 
-/// The options that the tests of the paper's method depend on, whatever the defaults are.
+/// The tests of the paper's method depend on these options, whatever the defaults are.
 inline MappingOptions paper_options() {
   MappingOptions options;
   options.run.method = Method::kPaper;
@@ -153,7 +153,7 @@ inline Shape shape_of(const Scan& scan, const MappingOptions& options) {
   return shapemap::shape_of(scan, options.returns, options.polylines, options.shape);
 }
 
-/// The shape of what a scanner sees, in the robot's frame.
+/// Returns the shape of a scan of the world, in the robot's frame.
 inline Shape shape_from(const World& world, const Pose2& world_from_robot, const Scanner& scanner = {},
                         unsigned seed = 1) {
   std::mt19937 rng(seed);

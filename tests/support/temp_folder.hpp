@@ -13,7 +13,7 @@
 
 namespace shapemap::test {
 
-/// A folder of its own for each test, gone afterwards.
+/// Each test has a folder of its own, which is removed afterwards.
 class TempFolder {
  public:
   TempFolder() {
@@ -57,7 +57,7 @@ inline std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// The decompressed content of a file, compressed or not.
+/// Returns the decompressed content of a file, compressed or not.
 inline std::string read_gz(const std::string& path) {
   std::string content;
   gzFile file = gzopen(path.c_str(), "rb");

@@ -8,15 +8,15 @@
 #include "shapemap/shape/scan_view.hpp"
 #include "support/synthetic_world.hpp"
 
-/// Places that are hard to align, and views of scans of them.
+/// These places are hard to match, and have views of scans of them.
 namespace shapemap::test {
 
-/// Two parallel walls along x, too long to see their ends.
+/// Builds two parallel walls along x, too long to see their ends.
 inline World bare_corridor(double half_width_m = 1.2) {
   return {{{-60.0, -half_width_m}, {60.0, -half_width_m}}, {{60.0, half_width_m}, {-60.0, half_width_m}}};
 }
 
-/// A circle about the origin.
+/// Builds a circle about the origin.
 inline World round_room(double radius_m = 3.0) {
   World world;
   std::vector<Point2> corners;
@@ -25,7 +25,8 @@ inline World round_room(double radius_m = 3.0) {
   return world;
 }
 
-/// A polygon of 7 to 12 corners, 2 to 6 m away from the origin, with boxes in it: no two seeds have anything in common.
+/// Builds a polygon of 7 to 12 corners, 2 to 6 m away from the origin, with boxes in it; no two seeds have anything in
+/// common.
 inline World strange_place(unsigned seed) {
   World world;
   std::mt19937 rng(seed);
@@ -43,7 +44,7 @@ inline World strange_place(unsigned seed) {
   return world;
 }
 
-/// As most robots have it: half a circle in steps of a degree.
+/// Most robots have such a laser: half a circle in steps of a degree.
 inline Scanner half_circle() {
   Scanner scanner;
   scanner.num_beams = 181;
@@ -52,7 +53,7 @@ inline Scanner half_circle() {
   return scanner;
 }
 
-/// All around in steps of a degree.
+/// This laser sees all around in steps of a degree.
 inline Scanner full_circle() {
   Scanner scanner;
   scanner.num_beams = 360;
@@ -68,13 +69,13 @@ inline ScanView view_from(const World& world, const Pose2& world_from_robot, con
   return view_of(scan_of(world, world_from_robot, scanner, rng));
 }
 
-/// What a robot sees that stands there with its laser turned by `angle_rad` more: exactly the same points, turned.
+/// Turns the laser of a standing robot by `angle_rad`: the scan has exactly the same points, turned.
 inline Scan turned(Scan scan, double angle_rad) {
   for (Sweep& sweep : scan.sweeps) sweep.nominal_heading_rad += angle_rad;
   return scan;
 }
 
-/// Nothing but beams without a return.
+/// Returns a scan with no returns at all.
 inline Scan blind_scan(int num_beams = 181) {
   Scan scan = scan_of(uneven_room(), {}, {num_beams, kPi, 0.0, 1, 20.0});
   for (float& range_m : scan.sweeps[0].ranges_m) range_m = std::numeric_limits<float>::quiet_NaN();

@@ -15,7 +15,7 @@ namespace shapemap {
 namespace {
 
 using test::expect_same_points;
-using test::make_scan;
+using test::make_sweep;
 using test::TempFolder;
 using testing::ContainsRegex;
 using testing::HasSubstr;
@@ -36,7 +36,7 @@ Log four_sweeps() {
     Scan scan;
     scan.timestamp_s = 1000.5 + i;
     for (int turn = 0; turn < 4; ++turn) {
-      scan.sweeps.push_back(make_scan(401, -50 * kDegree, 0.25 * kDegree));
+      scan.sweeps.push_back(make_sweep(401, -50 * kDegree, 0.25 * kDegree));
       scan.sweeps.back().nominal_heading_rad = turn * 90 * kDegree;
     }
     log.scans.push_back(scan);
@@ -95,7 +95,7 @@ TEST(MrptTools, Carmen2rawlogOfRobotLaserLinesIsReadBackEqual) {
   for (int i = 0; i < 3; ++i) {
     Scan scan;
     scan.timestamp_s = 100.25 + i;
-    scan.sweeps = {make_scan(181, -90 * kDegree, kDegree)};
+    scan.sweeps = {make_sweep(181, -90 * kDegree, kDegree)};
     scan.sweeps[0].max_range_m = 20.0 + i;  // no single maximum: cannot be FLASER
     log.scans.push_back(scan);
   }
@@ -122,7 +122,7 @@ TEST(MrptTools, Carmen2rawlogOfFlaserLinesIsReadBackWithItsAngles) {
     for (int i = 0; i < 3; ++i) {
       Scan scan;
       scan.timestamp_s = 100.25 + i;
-      scan.sweeps = {make_scan(num_beams, -90 * kDegree, step_deg * kDegree)};
+      scan.sweeps = {make_sweep(num_beams, -90 * kDegree, step_deg * kDegree)};
       log.scans.push_back(scan);
     }
     write_log(log, folder.path("in.log"), LogFormat::kCarmen);

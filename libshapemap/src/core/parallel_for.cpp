@@ -31,9 +31,9 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
   try {
     for (std::size_t t = 0; t < num_helpers; ++t) helpers.emplace_back(take_work);
   } catch (const std::system_error&) {
-    // The system gives no more threads: those that there are do all.
+    // The system gives no more threads, so the existing ones do all the work.
   } catch (const std::bad_alloc&) {
-    // Nor memory for one.
+    // The memory for one more thread is missing, so the existing ones do all the work.
   }
   take_work();
   for (std::thread& helper : helpers) helper.join();

@@ -10,20 +10,20 @@ namespace {
 constexpr std::string_view kCut = " ... ";
 
 struct Character {
-  std::size_t length = 1;  ///< in bytes
+  std::size_t length = 1;  ///< number of bytes
   bool is_shown = false;
 };
 
 bool is_harmless(std::uint32_t code) {
   if (code < 0x20 || (code >= 0x7F && code < 0xA0)) return false;
-  if (code >= 0xD800 && code < 0xE000) return false;   // halves of UTF-16 characters
-  if (code >= 0x200B && code <= 0x200F) return false;  // without width, or marks of direction
-  if (code >= 0x2028 && code <= 0x202E) return false;  // separators of lines, overrides of direction
+  if (code >= 0xD800 && code < 0xE000) return false;   // these are halves of UTF-16 characters
+  if (code >= 0x200B && code <= 0x200F) return false;  // these have no width, or mark the direction of writing
+  if (code >= 0x2028 && code <= 0x202E) return false;  // these separate lines, or override the direction of writing
   if (code >= 0x2060 && code <= 0x206F) return false;
   return code != 0x61C && code != 0xFEFF && code <= 0x10FFFF;
 }
 
-/// The character that begins at text[at]; of a byte that begins none, that byte.
+/// Returns the character that begins at text[at], or that single byte when no character begins there.
 Character character_at(std::string_view text, std::size_t at) {
   const auto first = static_cast<unsigned char>(text[at]);
   if (first < 0x80) return {1, is_harmless(first)};
@@ -37,7 +37,7 @@ Character character_at(std::string_view text, std::size_t at) {
   }
   constexpr std::uint32_t kLeastOf3 = 0x800;
   constexpr std::uint32_t kLeastOf4 = 0x10000;
-  if (code < (length == 4 ? kLeastOf4 : length == 3 ? kLeastOf3 : 0U)) return {};  // longer than needed
+  if (code < (length == 4 ? kLeastOf4 : length == 3 ? kLeastOf3 : 0U)) return {};  // the encoding is longer than needed
   return {length, is_harmless(code)};
 }
 
@@ -68,13 +68,13 @@ bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U
 }  // namespace
 
 std::string printable(std::string_view text, std::size_t most) {
-  // What is cut away need not be looked at: no character becomes shorter.
+  // No character becomes shorter when it is escaped, so the part that is cut away need not be escaped.
   if (text.size() / 2 > most) {
     return printable(std::string(text.substr(0, most)) + std::string(text.substr(text.size() - most)), most);
   }
   std::string shown = escaped(text);
   if (shown.size() <= most) return shown;
-  // Never within a character.
+  // The cut never falls within a character.
   std::size_t head = most / 2;
   std::size_t tail = shown.size() - std::min(most - head, shown.size());
   while (head > 0 && continues(shown[head])) --head;

@@ -6,17 +6,17 @@
 
 namespace shapemap {
 
-/// Symmetric positive definite linear equations in which an unknown only meets those near it in the list.
+/// The system is symmetric and positive definite, and an unknown only meets those near it in the list.
 class BandedSystem {
  public:
-  /// Unknowns meet others less than `bandwidth` away.
+  /// An unknown meets others that are less than `bandwidth` away.
   BandedSystem(std::size_t size, std::size_t bandwidth);
 
   /// Adds `a` and `b` for the unknowns from `first` on.
   void add(std::size_t first, const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
   void add_to_diagonal(std::size_t row, double value) { rows_(static_cast<Eigen::Index>(row), 0) += value; }
 
-  /// By Cholesky's method, in place: the system is used up.
+  /// Solves by Cholesky's method in place, which uses the system up.
   Eigen::VectorXd solve();
 
  private:

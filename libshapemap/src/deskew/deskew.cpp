@@ -8,7 +8,7 @@
 #include "shapemap/core/errors.hpp"
 #include "shapemap/core/parallel_for.hpp"
 #include "shapemap/scan/joined_logs.hpp"
-#include "sweep_chain.hpp"
+#include "sweep_motion.hpp"
 #include "sweep_timing.hpp"
 #include "sweep_trial.hpp"
 #include "sweep_unbending.hpp"
@@ -19,21 +19,21 @@ namespace {
 /// No laser goes round more slowly. Scans that are farther apart were picked, and logs without a clock count seconds.
 constexpr double kLongestPeriod_s = 0.6;
 
-/// And none faster, so that such stamps are in another unit.
+/// No laser goes round faster, so that such stamps are in another unit.
 constexpr double kShortestPeriod_s = 0.002;
 
-/// Of a sweep that fills its period: sensors that are read less often than they go round, or that rest in between.
+/// Sensors that are read less often than they go round, or that rest in between, need only such shares of their period.
 constexpr std::array<double, 4> kShares{0.75, 0.5, 1.0 / 3.0, 0.25};
 
-/// Points of a sweep that its motion is found by.
+/// The motion of a sweep is estimated from so many points.
 constexpr std::size_t kPoints = 360;
 
-/// Sweeps whose hits move less are straight.
+/// A sweep whose points move less than this is straight already.
 constexpr double kStraight_m = 0.005;
-/// And those that go together no better have a motion that is not known.
+/// A sweep that matches its neighbours no better than this has an unknown motion.
 constexpr double kUnknownMotion_m = 0.15;
 
-/// What a log says of the time of a sweep is believed within these shares of the period.
+/// A sweep time that a log states is believed within these shares of the period.
 constexpr double kShortestTold = 0.02;
 constexpr double kLongestTold = 1.05;
 
@@ -44,17 +44,24 @@ std::string seconds_text(double seconds) {
   return stream.str();
 }
 
-class Part {
+/// All sessions of a call of straightened() share this task.
+struct Task {
+  const ReturnOptions& returns;
+  const DeskewOptions& options;
+  int every;  ///< turns of the laser from one scan to the next
+  const Execution& execution;
+};
+
+class SessionDeskew {
  public:
-  Part(const Log& log, const LogPart& part, const ReturnOptions& returns, const DeskewOptions& options, int every,
-       int threads, RunObserver& observer)
+  SessionDeskew(const Task& task, const Log& log, const LogPart& part)
       : log_(log),
         part_(part),
-        returns_(returns),
-        options_(options),
-        every_(every),
-        threads_(threads),
-        observer_(observer) {}
+        returns_(task.returns),
+        options_(task.options),
+        every_(task.every),
+        execution_(task.execution),
+        observer_(task.execution.observer) {}
 
   SweepVerdict straighten(std::vector<Scan>& scans) {
     verdict_.period_s = usual_period_s(log_, part_.first, part_.last);
@@ -83,7 +90,7 @@ class Part {
   }
 
  private:
-  /// What the laser takes to go round.
+  /// Returns the time in which the laser goes round once.
   double turn_s() const { return verdict_.period_s / every_; }
 
   bool is_possible(double told_s) const {
@@ -103,8 +110,8 @@ class Part {
     }
     if (candidates.empty() || runs.empty()) return {};
     if (options_.mode == Deskew::kOn) return candidates.front();
-    const BeamTiming best =
-        best_timing(log_, runs, verdict_.period_s, candidates, returns_, threads_, observer_, verdict_);
+    const SweepRecording recording{log_, runs, verdict_.period_s, returns_};
+    const BeamTiming best = best_timing(recording, candidates, execution_, verdict_);
     if (candidates.front().told && !best.told) {
       observer_.on_warning("by what the log says, a sweep takes " + seconds_text(told_s) + ", but scans go together " +
                            (best.sweep_time_s == 0.0 ? "worse for it" : "better by another time") +
@@ -114,13 +121,13 @@ class Part {
   }
 
   void straighten_run(const SweepRun& run, const BeamTiming& timing, std::vector<Scan>& scans) {
-    const std::vector<TimedSweep> sweeps = timed_sweeps(log_, run.first, run.last, timing, returns_, kPoints);
-    const SweepMotion motion = sweep_motion(sweeps, verdict_.period_s, threads_, [&](std::size_t done) {
+    const std::vector<TimedSweep> sweeps = timed_sweeps(log_, run, timing, returns_, kPoints);
+    const SweepMotion motion = sweep_motion(sweeps, verdict_.period_s, execution_.threads, [&](std::size_t done) {
       observer_.on_progress(run.first - part_.first + done, part_.last - part_.first);
       return observer_.keep_going();
     });
     std::vector<SweepVerdict> parts(sweeps.size());
-    parallel_for(sweeps.size(), threads_, [&](std::size_t i) {
+    parallel_for(sweeps.size(), execution_.threads, [&](std::size_t i) {
       const double next_m = i + 1 < sweeps.size() ? motion.misfit_m[i + 1] : motion.misfit_m[i];
       const double before_m = i > 0 ? motion.misfit_m[i] : next_m;
       if (std::min(before_m, next_m) > kUnknownMotion_m) {
@@ -160,24 +167,25 @@ class Part {
   LogPart part_;
   const ReturnOptions& returns_;
   const DeskewOptions& options_;
-  int every_;  ///< turns of the laser from one position to the next
-  int threads_;
+  int every_;
+  const Execution& execution_;
   RunObserver& observer_;
   SweepVerdict verdict_;
 };
 
 }  // namespace
 
-Log straightened(Log log, const ReturnOptions& returns, const DeskewOptions& options, int every, int threads,
-                 RunObserver& observer, std::vector<SweepVerdict>& verdicts) {
-  verdicts.clear();
-  if (options.mode != Deskew::kOff) observer.on_stage("sweeps");
-  for (const LogPart& part : parts_of(log)) {
-    verdicts.emplace_back();
+StraightenedLog straightened(Log log, const ReturnOptions& returns, const DeskewOptions& options, int every,
+                             const Execution& execution) {
+  StraightenedLog result{std::move(log), {}};
+  if (options.mode != Deskew::kOff) execution.observer.on_stage("sweeps");
+  const Task task{returns, options, every, execution};
+  for (const LogPart& part : parts_of(result.log)) {
+    result.verdicts.emplace_back();
     if (options.mode == Deskew::kOff) continue;
-    verdicts.back() = Part(log, part, returns, options, every, threads, observer).straighten(log.scans);
+    result.verdicts.back() = SessionDeskew(task, result.log, part).straighten(result.log.scans);
   }
-  return log;
+  return result;
 }
 
 }  // namespace shapemap

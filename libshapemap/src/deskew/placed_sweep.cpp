@@ -7,18 +7,18 @@
 namespace shapemap {
 namespace {
 
-/// Points of one surface are this near each other, at least; and farther, the farther they are away.
+/// Points of one surface are at most this far apart, and farther the longer their range is.
 constexpr double kSurfaceGap_m = 0.10;
 constexpr double kSurfaceGapPerRange = 0.06;
-constexpr std::size_t kSurfacePoints = 3;  ///< to either side
+constexpr std::size_t kSurfacePoints = 3;  ///< number of points to either side
 
-/// A sweep is bent by less than this share of the turn of its beams, and of the usual distance of what it sees.
+/// A sweep is bent by less than this share of the turn of its beams, and of its usual range.
 constexpr double kMostBent = 0.3;
 
-/// Beyond this, a distance only says that there is no partner.
+/// A distance beyond this only says that there is no partner.
 constexpr double kMisfitLimit_m = 0.25;
 
-/// Of the line through the points [low, high].
+/// Returns the normal of the line through the points [low, high].
 Point2 normal_of(const std::vector<Point2>& p_m, std::size_t low, std::size_t high) {
   Point2 mean_m(0.0, 0.0);
   for (std::size_t k = low; k <= high; ++k) mean_m += p_m[k];
@@ -30,7 +30,7 @@ Point2 normal_of(const std::vector<Point2>& p_m, std::size_t low, std::size_t hi
     cos2 += d.x() * d.x() - d.y() * d.y();
     sin2 += 2.0 * d.x() * d.y();
   }
-  // Of the angle of which these are the cosine and sine of the double, times a length.
+  // These are the cosine and sine of the doubled angle, times a length.
   const double length = std::hypot(cos2, sin2);
   if (!(length > 0.0)) return {0.0, 0.0};
   const double along_x = std::sqrt(std::max(0.0, 0.5 * (1.0 + cos2 / length)));
@@ -66,10 +66,10 @@ PointIndex::Neighbour SweepNeighbours::nearest(const Point2& p_m, double gate_m)
   return near;
 }
 
-bool is_wild(const TimedSweep& sweep, const SweepTrajectory& trajectory) {
+bool is_implausible(const TimedSweep& sweep, const SweepTrajectory& trajectory) {
   const Eigen::Vector3d moved = trajectory.at(sweep.last_s) - trajectory.at(sweep.first_s);
   if (sweep.last_s == sweep.first_s) return false;
-  // Written so that NaN is wild.
+  // The comparison is written so that NaN is implausible.
   return !(std::abs(moved.z()) < kMostBent * sweep.turned_rad &&
            moved.head<2>().norm() < std::max(kMostBent * sweep.usual_range_m, kSurfaceGap_m));
 }

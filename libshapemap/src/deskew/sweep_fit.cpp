@@ -14,10 +14,10 @@ namespace {
 /// Each sweep is compared with so many after it.
 constexpr std::size_t kReach = 2;
 
-/// What a point off its surface is worth, neighbouring points erring alike.
+/// A point off its surface has this standard deviation; it allows for neighbouring points that err alike.
 constexpr double kResidual_m = 0.03;
 
-/// How far the third difference of control points one second apart may be: hands and heads move so.
+/// The third difference of control points one second apart has this standard deviation, which fits hands and heads.
 constexpr double kJerk_m_s3 = 40.0;
 constexpr double kJerk_rad_s3 = 100.0;
 
@@ -25,11 +25,11 @@ constexpr double kJerk_rad_s3 = 100.0;
 constexpr double kTrustedShareOfGate = 0.3;
 const double kCosTangentGate = std::cos(35 * kDegree);
 
-/// Where a sweep's points are, and what they depend on.
+/// The points of a sweep are linearised in the control points that they depend on.
 struct Linearised {
   PlacedSweep placed;
   std::vector<SweepTrajectory::Support> supports;
-  std::vector<Point2> turned_m;  ///< from the robot, in the map's directions
+  std::vector<Point2> turned_m;  ///< from the robot, in the directions of the map
 };
 
 Linearised linearised(const TimedSweep& sweep, const SweepTrajectory& trajectory) {
@@ -45,9 +45,9 @@ Linearised linearised(const TimedSweep& sweep, const SweepTrajectory& trajectory
   return result;
 }
 
-/// Normal equations of what one sweep has in common with those after it.
+/// A block has the normal equations that one sweep shares with those after it.
 struct Block {
-  std::size_t first = 0;  ///< control point
+  std::size_t first = 0;  ///< index of the first control point
   Eigen::MatrixXd a;
   Eigen::VectorXd b;
 
@@ -66,6 +66,12 @@ struct Block {
   }
 };
 
+/// A residual depends on the pose of a sweep by this derivative, and so on the control points of that pose.
+struct Dependence {
+  const Eigen::Vector3d& by_pose;
+  const SweepTrajectory::Support& support;
+};
+
 /// Collects equations of the same unknowns, so that they are multiplied out together.
 class Collector {
  public:
@@ -74,15 +80,14 @@ class Collector {
   Collector(const Collector&) = delete;
   Collector& operator=(const Collector&) = delete;
 
-  void add(const Eigen::Vector3d& ja, const SweepTrajectory::Support& sa, const Eigen::Vector3d& jb,
-           const SweepTrajectory::Support& sb, double root_weight, double residual) {
-    if (num_ == kMost || sa.first != fu_ || sb.first != fv_) flush();
-    fu_ = sa.first;
-    fv_ = sb.first;
+  void add(const Dependence& a, const Dependence& b, double root_weight, double residual) {
+    if (num_ == kMost || a.support.first != fu_ || b.support.first != fv_) flush();
+    fu_ = a.support.first;
+    fv_ = b.support.first;
     for (std::size_t k = 0; k < SweepTrajectory::kOrder; ++k) {
       const auto row = static_cast<Eigen::Index>(3 * k);
-      columns_.col(num_).segment<3>(row) = (root_weight * sa.weights[k]) * ja;
-      columns_.col(num_).segment<3>(12 + row) = (root_weight * sb.weights[k]) * jb;
+      columns_.col(num_).segment<3>(row) = (root_weight * a.support.weights[k]) * a.by_pose;
+      columns_.col(num_).segment<3>(12 + row) = (root_weight * b.support.weights[k]) * b.by_pose;
     }
     residuals_[num_++] = root_weight * residual;
   }
@@ -121,25 +126,25 @@ void add_partners(const Linearised& from, const Linearised& to, double gate_m, s
     const Point2& tb = to.turned_m[near.point];
     const Eigen::Vector3d ja(normal.x(), normal.y(), normal.dot(Point2(-ta.y(), ta.x())));
     const Eigen::Vector3d jb(-normal.x(), -normal.y(), -normal.dot(Point2(-tb.y(), tb.x())));
-    collector.add(ja, from.supports[k], jb, to.supports[near.point], root_weight, residual_m);
+    collector.add({ja, from.supports[k]}, {jb, to.supports[near.point]}, root_weight, residual_m);
   }
 }
 
 class Fit {
  public:
-  Fit(const std::vector<TimedSweep>& sweeps, std::size_t first, std::size_t last, std::size_t first_free,
-      const SweepFitOptions& options, SweepTrajectory& trajectory)
-      : sweeps_(sweeps), first_(first), last_(last), options_(options), trajectory_(trajectory) {
-    begin_ = trajectory.support(sweeps[first].first_s).first;
-    end_ = trajectory.support(sweeps[first].last_s).first + SweepTrajectory::kOrder;
-    for (std::size_t i = first; i < last; ++i) {
+  Fit(const std::vector<TimedSweep>& sweeps, const SweepFitRange& range, const SweepFitOptions& options,
+      SweepTrajectory& trajectory)
+      : sweeps_(sweeps), first_(range.first), last_(range.last), options_(options), trajectory_(trajectory) {
+    begin_ = trajectory.support(sweeps[first_].first_s).first;
+    end_ = trajectory.support(sweeps[first_].last_s).first + SweepTrajectory::kOrder;
+    for (std::size_t i = first_; i < last_; ++i) {
       begin_ = std::min(begin_, trajectory.support(sweeps[i].first_s).first);
       end_ = std::max(end_, trajectory.support(sweeps[i].last_s).first + SweepTrajectory::kOrder);
     }
-    fixed_ = std::min(std::max(first_free, begin_), end_) - begin_;
+    fixed_ = std::min(std::max(range.first_free, begin_), end_) - begin_;
   }
 
-  /// How far the control points moved: the most along any of x, y and the heading.
+  /// Does one iteration and returns the largest move of a control point along any of x, y and the heading.
   double iterate(double gate_m) {
     std::vector<Linearised> linear(last_ - first_);
     parallel_for(linear.size(), options_.threads,
@@ -189,7 +194,7 @@ class Fit {
     return widest;
   }
 
-  /// Third differences, also with those that are fixed before.
+  /// Penalises third differences, including those that reach into the fixed control points.
   void add_smoothness(BandedSystem& system) const {
     const double cube_s3 = std::pow(trajectory_.knot_s(), 3);
     const Eigen::Vector3d sigma(kJerk_m_s3 * cube_s3, kJerk_m_s3 * cube_s3, kJerk_rad_s3 * cube_s3);
@@ -213,7 +218,7 @@ class Fit {
     }
   }
 
-  /// What is fixed does not move; of all, nothing moves without a reason; and without fixed ones, the first holds.
+  /// Holds the fixed control points, and all others weakly. Without fixed ones, the first is held.
   void hold(BandedSystem& system) const {
     constexpr double kFixed = 1e12;
     constexpr double kHeld = 1e-3;
@@ -227,16 +232,16 @@ class Fit {
   std::size_t last_;
   const SweepFitOptions& options_;
   SweepTrajectory& trajectory_;
-  std::size_t begin_ = 0;  ///< control points
+  std::size_t begin_ = 0;  ///< range of control points
   std::size_t end_ = 0;
-  std::size_t fixed_ = 0;  ///< so many of these
+  std::size_t fixed_ = 0;  ///< so many of these, from the first on, are fixed
 };
 
 }  // namespace
 
-void fit_sweeps(const std::vector<TimedSweep>& sweeps, std::size_t first, std::size_t last, std::size_t first_free,
-                const SweepFitOptions& options, SweepTrajectory& trajectory) {
-  Fit fit(sweeps, first, last, first_free, options, trajectory);
+void fit_sweeps(const std::vector<TimedSweep>& sweeps, const SweepFitRange& range, const SweepFitOptions& options,
+                SweepTrajectory& trajectory) {
+  Fit fit(sweeps, range, options, trajectory);
   double gate_m = options.first_gate_m;
   const double shrink = options.iterations > 1 ? std::pow(options.last_gate_m / options.first_gate_m,
                                                           1.0 / static_cast<double>(options.iterations - 1))

@@ -10,15 +10,15 @@
 
 namespace shapemap {
 
-/// What a beam of a moving robot hit, as the robot saw it at the time of that beam.
+/// The robot saw this point at the time of the beam, while it moved.
 struct SweepPoint {
   Point2 p_m;
-  std::size_t sweep = 0;     ///< index into Position::sweeps
-  std::size_t beam = 0;      ///< and into its ranges
-  bool begins_line = false;  ///< the point before it is of another sub-scan
+  std::size_t sweep = 0;     ///< index into Scan::sweeps
+  std::size_t beam = 0;      ///< index into Sweep::ranges_m
+  bool begins_line = false;  ///< the point before it is of another sweep
 };
 
-/// The hits of all sub-scans of a position, in the order in which their beams were sent; about `max_points` of them,
+/// Returns the points of all sweeps of a scan, in the order in which their beams were sent; about `max_points` of them,
 /// evenly spread over the beams.
 std::vector<SweepPoint> sweep_points(const Scan& scan, const ReturnOptions& options, std::size_t max_points);
 

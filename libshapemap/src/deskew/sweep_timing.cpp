@@ -11,9 +11,9 @@
 namespace shapemap {
 namespace {
 
-/// A longer time between two sweeps is a gap: what happened meanwhile is not known.
+/// A longer time between two sweeps is a gap in which the motion is unknown.
 constexpr double kLongestGap = 2.5;
-/// And beams that are sent more periods away from the stamp are no part of a sweep.
+/// Beams that are sent more periods away from the stamp are no part of a sweep.
 constexpr double kOddTime = 2.0;
 /// Fewer sweeps in a row do not tell how they were bent.
 constexpr std::size_t kLeastSweeps = 4;
@@ -25,7 +25,7 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-/// Whether the log says of a beam that it was sent long before or after its sweep: that is no time to go by.
+/// Says whether the log states that a beam was sent long before or after its sweep, which makes its times useless.
 bool has_odd_times(const Scan& scan, double period_s) {
   for (const Sweep& sweep : scan.sweeps) {
     for (std::size_t beam = 0; beam < sweep.ranges_m.size(); ++beam) {
@@ -35,7 +35,7 @@ bool has_odd_times(const Scan& scan, double period_s) {
   return false;
 }
 
-/// What the beams of the widest sub-scan go through.
+/// Returns the angle that the beams of the widest sweep go through.
 double turned_rad(const Scan& scan) {
   double turned_rad = 0.0;
   for (const Sweep& sweep : scan.sweeps) {
@@ -89,14 +89,14 @@ double BeamTiming::beam_s(const Sweep& sweep, std::size_t beam) const {
   return sweep_time_s > 0.0 ? share * sweep_time_s : (share - 1.0) * sweep_time_s;
 }
 
-std::vector<TimedSweep> timed_sweeps(const Log& log, std::size_t first, std::size_t last, const BeamTiming& timing,
+std::vector<TimedSweep> timed_sweeps(const Log& log, const SweepRun& run, const BeamTiming& timing,
                                      const ReturnOptions& returns, std::size_t max_points) {
   std::vector<TimedSweep> sweeps;
-  sweeps.reserve(last - first);
-  for (std::size_t i = first; i < last; ++i) {
+  sweeps.reserve(run.last - run.first);
+  for (std::size_t i = run.first; i < run.last; ++i) {
     const Scan& scan = log.scans[i];
     TimedSweep sweep;
-    sweep.stamp_s = scan.timestamp_s - log.scans[first].timestamp_s;
+    sweep.stamp_s = scan.timestamp_s - log.scans[run.first].timestamp_s;
     sweep.first_s = sweep.stamp_s;
     sweep.last_s = sweep.stamp_s;
     std::vector<double> ranges_m;

@@ -7,7 +7,7 @@
 namespace shapemap {
 namespace {
 
-/// Knots are counted in 32 bits elsewhere; no log is so long.
+/// Other code counts knots in 32 bits; no log is so long.
 constexpr double kMostKnots = 1e8;
 
 }  // namespace

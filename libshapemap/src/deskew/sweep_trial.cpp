@@ -7,22 +7,22 @@
 
 #include "shapemap/core/errors.hpp"
 #include "shapemap/core/parallel_for.hpp"
-#include "sweep_chain.hpp"
+#include "sweep_motion.hpp"
 
 namespace shapemap {
 namespace {
 
-/// Stretches of so many sweeps, not overlapping; so many are looked at, and so many of these judged.
+/// Stretches have so many sweeps and do not overlap; so many of them are examined, and so many of these judged.
 constexpr std::size_t kStretch = 4;
-constexpr std::size_t kLookedAt = 48;
+constexpr std::size_t kExamined = 48;
 constexpr std::size_t kJudged = 24;
-constexpr std::size_t kFirstJudged = 8;   ///< show whether the rest is worth the effort
+constexpr std::size_t kFirstJudged = 8;   ///< these show whether the rest is worth the effort
 constexpr std::size_t kLeastJudged = 13;  ///< fewer could not be sure of anything by kError
 constexpr std::size_t kPoints = 120;
 
-/// A stretch tells something of the time of a sweep where the robot turns by this from one sweep to the next.
+/// A stretch tells something of the sweep time where the robot turns by this from one sweep to the next.
 constexpr double kFast_rad = 2.0 * kDegree;
-/// Scans that do not even go together so well are of places too different.
+/// Scans with a larger misfit show places that differ too much.
 constexpr double kWorstMisfit_m = 0.10;
 
 /// The verdict "better" is wrong this often where the times of the beams do not matter.
@@ -33,21 +33,20 @@ std::vector<SweepRun> stretches_of(const std::vector<SweepRun>& runs) {
   for (const SweepRun& run : runs) {
     for (std::size_t i = run.first; i + kStretch <= run.last; i += kStretch) all.push_back({i, i + kStretch});
   }
-  if (all.size() <= kLookedAt) return all;
+  if (all.size() <= kExamined) return all;
   std::vector<SweepRun> some;
-  for (std::size_t k = 0; k < kLookedAt; ++k) some.push_back(all[k * all.size() / kLookedAt]);
+  for (std::size_t k = 0; k < kExamined; ++k) some.push_back(all[k * all.size() / kExamined]);
   return some;
 }
 
 struct Trial {
   double misfit_m = 0.0;
-  double turned_rad = 0.0;  ///< the most from one sweep to the next
+  double turned_rad = 0.0;  ///< largest turn from one sweep to the next
 };
 
-Trial tried(const Log& log, const SweepRun& stretch, const BeamTiming& timing, double period_s,
-            const ReturnOptions& returns) {
-  const std::vector<TimedSweep> sweeps = timed_sweeps(log, stretch.first, stretch.last, timing, returns, kPoints);
-  const ShortMotion motion = short_motion(sweeps, period_s);
+Trial tried(const SweepRecording& recording, const SweepRun& stretch, const BeamTiming& timing) {
+  const std::vector<TimedSweep> sweeps = timed_sweeps(recording.log, stretch, timing, recording.returns, kPoints);
+  const ShortMotion motion = short_motion(sweeps, recording.period_s);
   Trial trial;
   trial.misfit_m = motion.misfit_m;
   for (std::size_t i = 1; i < sweeps.size(); ++i) {
@@ -58,7 +57,7 @@ Trial tried(const Log& log, const SweepRun& stretch, const BeamTiming& timing, d
   return trial;
 }
 
-/// The stretches that are turned through fastest.
+/// Returns the stretches with the fastest turns.
 std::vector<SweepRun> fastest(const std::vector<SweepRun>& stretches, const std::vector<Trial>& trials) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < stretches.size(); ++i) {
@@ -72,25 +71,25 @@ std::vector<SweepRun> fastest(const std::vector<SweepRun>& stretches, const std:
   return chosen;
 }
 
-/// A row for each stretch: the misfit of its sweeps as they are, and by each of the candidates.
+/// Each row belongs to a stretch: the misfit of its sweeps as recorded, and under each of the candidates.
 using Rows = std::vector<std::vector<double>>;
 
-std::vector<double> misfits_of(const Log& log, const SweepRun& stretch, const std::vector<BeamTiming>& candidates,
-                               double period_s, const ReturnOptions& returns) {
-  std::vector<double> row{tried(log, stretch, {}, period_s, returns).misfit_m};
+std::vector<double> misfits_of(const SweepRecording& recording, const SweepRun& stretch,
+                               const std::vector<BeamTiming>& candidates) {
+  std::vector<double> row{tried(recording, stretch, {}).misfit_m};
   for (const BeamTiming& candidate : candidates) {
-    row.push_back(tried(log, stretch, candidate, period_s, returns).misfit_m);
+    row.push_back(tried(recording, stretch, candidate).misfit_m);
   }
   return row;
 }
 
-/// In how many rows column `a` has less than column `b`.
+/// Returns the number of rows in which column `a` is less than column `b`.
 std::size_t num_less(const Rows& rows, std::size_t a, std::size_t b) {
   return static_cast<std::size_t>(
       std::count_if(rows.begin(), rows.end(), [&](const auto& row) { return row[a] < row[b]; }));
 }
 
-/// By how much column `b` is less than column `a`, row by row.
+/// Returns by how much column `b` is less than column `a`, row by row.
 std::vector<double> gains_of(const Rows& rows, std::size_t a, std::size_t b) {
   std::vector<double> gains;
   for (const auto& row : rows) gains.push_back(row[a] - row[b]);
@@ -103,7 +102,7 @@ double mean_of(const Rows& rows, std::size_t column) {
   return sum / std::max<double>(1.0, static_cast<double>(rows.size()));
 }
 
-/// Whether any of the candidates is better in the mean; if not, a verdict for it is not to be expected.
+/// Says whether any candidate is better in the mean; if not, no verdict for it is to be expected.
 bool promises_something(const Rows& rows) {
   for (std::size_t c = 1; c < rows.front().size(); ++c) {
     if (mean_of(rows, c) < mean_of(rows, 0)) return true;
@@ -119,7 +118,7 @@ double chance_of_gains(const std::vector<double>& gains) {
     if (gain != 0.0) sizes.push_back(std::abs(gain));
   }
   std::sort(sizes.begin(), sizes.end());
-  // Twice the ranks, so that those of equal sizes, which share their mean, are whole numbers.
+  // Ranks are doubled, so that equal sizes, which share their mean rank, have whole numbers.
   const auto rank_of = [&](double size) {
     const auto [low, high] = std::equal_range(sizes.begin(), sizes.end(), size);
     return static_cast<std::size_t>((low - sizes.begin()) + (high - sizes.begin()) + 1);
@@ -140,25 +139,23 @@ double chance_of_gains(const std::vector<double>& gains) {
   return std::accumulate(chance.begin() + static_cast<std::ptrdiff_t>(reached), chance.end(), 0.0);
 }
 
-BeamTiming best_timing(const Log& log, const std::vector<SweepRun>& runs, double period_s,
-                       const std::vector<BeamTiming>& candidates, const ReturnOptions& returns, int threads,
-                       RunObserver& observer, SweepVerdict& verdict) {
-  const std::vector<SweepRun> stretches = stretches_of(runs);
-  std::vector<Trial> looks(stretches.size());
-  parallel_for(stretches.size(), threads,
-               [&](std::size_t i) { looks[i] = tried(log, stretches[i], candidates.front(), period_s, returns); });
-  if (!observer.keep_going()) throw Interrupted();
-  const std::vector<SweepRun> judged = fastest(stretches, looks);
+BeamTiming best_timing(const SweepRecording& recording, const std::vector<BeamTiming>& candidates,
+                       const Execution& execution, SweepVerdict& verdict) {
+  const std::vector<SweepRun> stretches = stretches_of(recording.runs);
+  std::vector<Trial> trials(stretches.size());
+  parallel_for(stretches.size(), execution.threads,
+               [&](std::size_t i) { trials[i] = tried(recording, stretches[i], candidates.front()); });
+  if (!execution.observer.keep_going()) throw Interrupted();
+  const std::vector<SweepRun> judged = fastest(stretches, trials);
   verdict.num_judged = judged.size();
   const BeamTiming unless_refuted = candidates.front().told ? candidates.front() : BeamTiming{};
   if (judged.size() < kLeastJudged) return unless_refuted;
 
   const auto judge = [&](std::size_t first, std::size_t last, Rows& rows) {
     rows.resize(last);
-    parallel_for(last - first, threads, [&](std::size_t i) {
-      rows[first + i] = misfits_of(log, judged[first + i], candidates, period_s, returns);
-    });
-    if (!observer.keep_going()) throw Interrupted();
+    parallel_for(last - first, execution.threads,
+                 [&](std::size_t i) { rows[first + i] = misfits_of(recording, judged[first + i], candidates); });
+    if (!execution.observer.keep_going()) throw Interrupted();
   };
   Rows misfits_m;
   judge(0, std::min(kFirstJudged, judged.size()), misfits_m);
@@ -174,7 +171,7 @@ BeamTiming best_timing(const Log& log, const std::vector<SweepRun>& runs, double
   verdict.misfit_after_m = mean_of(misfits_m, best);
   const auto tries = static_cast<double>(candidates.size());
   if (tries * chance_of_gains(gains_of(misfits_m, 0, best)) < kError) return candidates[best - 1];
-  // What a log tells needs no proof, but must not be proved wrong.
+  // A timing that the log states needs no proof, but must not be proved wrong.
   return chance_of_gains(gains_of(misfits_m, best, 0)) < kError ? BeamTiming{} : unless_refuted;
 }
 

@@ -4,22 +4,29 @@
 #include <cstddef>
 #include <vector>
 
-#include "shapemap/core/observer.hpp"
+#include "shapemap/core/execution.hpp"
 #include "shapemap/deskew/deskew.hpp"
 #include "sweep_timing.hpp"
 
 namespace shapemap {
 
-/// Tries `candidates` on stretches of `runs` where the robot turns fast, each as a time that a sweep may take; the
-/// first is the likeliest. The one by which successive scans go together best, if that is no chance; else what the log
-/// tells, if it is the first and not worse than nothing; else a timing with sweep_time_s 0. What was seen goes into
-/// `verdict`.
-BeamTiming best_timing(const Log& log, const std::vector<SweepRun>& runs, double period_s,
-                       const std::vector<BeamTiming>& candidates, const ReturnOptions& returns, int threads,
-                       RunObserver& observer, SweepVerdict& verdict);
+/// Timings are tried on these sweeps of one session.
+struct SweepRecording {
+  const Log& log;
+  const std::vector<SweepRun>& runs;
+  double period_s;
+  const ReturnOptions& returns;
+};
 
-/// Probability of gains as high as these, all in all, where gains and losses are equally likely: Wilcoxon's signed-rank
-/// test, one-sided and exact.
+/// Tries `candidates` for the sweep time, the likeliest of them first, on stretches of the recording's runs where the
+/// robot turns fast. Returns the candidate under which successive scans match best, if that is significant; else the
+/// timing that the log states, if it is the first candidate and not worse than none; else a timing with sweep_time_s 0.
+/// The misfits go into `verdict`.
+BeamTiming best_timing(const SweepRecording& recording, const std::vector<BeamTiming>& candidates,
+                       const Execution& execution, SweepVerdict& verdict);
+
+/// Returns the probability of gains as high as these where gains and losses are equally likely, by the one-sided, exact
+/// signed-rank test (Wilcoxon 1945).
 double chance_of_gains(const std::vector<double>& gains);
 
 }  // namespace shapemap

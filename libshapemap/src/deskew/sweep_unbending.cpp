@@ -16,9 +16,15 @@ struct Beam {
   float range_m = 0.0F;
 };
 
-/// The beam from where the sensor was at the stamp to what `sweep` hit then.
-Beam unbent_beam(const Sweep& sweep, std::size_t beam, const RangeLimits& limits, const Pose2& robot_from_sensor,
-                 double upward, const Pose2& stamp_from_beam) {
+struct Mount {
+  Pose2 robot_from_sensor;
+  double upward = 1.0;  ///< -1 for a sensor that is mounted upside down
+};
+
+/// Returns the beam from the pose of the sensor at the stamp to the point that `beam` hit.
+Beam unbent_beam(const Sweep& sweep, std::size_t beam, const RangeLimits& limits, const Mount& mount,
+                 const Pose2& stamp_from_beam) {
+  const auto& [robot_from_sensor, upward] = mount;
   const float range_m = sweep.ranges_m[beam];
   const double angle_rad = sweep.beam_angle_rad(beam);
   if (!is_return(range_m, limits)) return {angle_rad + upward * stamp_from_beam.theta_rad, range_m};
@@ -29,7 +35,7 @@ Beam unbent_beam(const Sweep& sweep, std::size_t beam, const RangeLimits& limits
   return {angle_rad + upward * turn_rad, static_cast<float>(straight_m.norm())};
 }
 
-/// Which beams lie within one turn from the first, by angle in the direction in which the sweep goes round.
+/// Returns the beams that lie within one turn from the first, by angle in the direction in which the sweep goes round.
 std::vector<std::size_t> once_round(const std::vector<Beam>& beams, double direction) {
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < beams.size(); ++i) {
@@ -39,7 +45,7 @@ std::vector<std::size_t> once_round(const std::vector<Beam>& beams, double direc
   std::stable_sort(kept.begin(), kept.end(), [&](std::size_t a, std::size_t b) {
     return direction * beams[a].angle_rad < direction * beams[b].angle_rad;
   });
-  // Those before the first beam may be where the last ones are.
+  // Beams before the first one may lie where the last ones are.
   const double first_rad = kept.empty() ? 0.0 : direction * beams[kept.front()].angle_rad;
   while (!kept.empty() && direction * beams[kept.back()].angle_rad - first_rad >= 2.0 * kPi) kept.pop_back();
   return kept;
@@ -49,13 +55,12 @@ std::vector<std::size_t> once_round(const std::vector<Beam>& beams, double direc
 
 Sweep unbent(const Sweep& sweep, const ReturnOptions& options, const BeamMotion& stamp_from_beam) {
   const RangeLimits limits = range_limits(sweep, options);
-  const Pose2 robot_from_sensor = robot_from_sensor2(sweep);
-  const double upward = is_upside_down(sweep.robot_from_sensor) ? -1.0 : 1.0;
+  const Mount mount{robot_from_sensor2(sweep), is_upside_down(sweep.robot_from_sensor) ? -1.0 : 1.0};
   const std::size_t num = sweep.ranges_m.size();
   std::vector<Beam> beams;
   beams.reserve(num);
   for (std::size_t i = 0; i < num; ++i) {
-    beams.push_back(unbent_beam(sweep, i, limits, robot_from_sensor, upward, stamp_from_beam(i)));
+    beams.push_back(unbent_beam(sweep, i, limits, mount, stamp_from_beam(i)));
   }
   const double direction = num > 1 && sweep.beam_angle_rad(num - 1) < sweep.beam_angle_rad(0) ? -1.0 : 1.0;
   Sweep straight = sweep;
@@ -68,7 +73,7 @@ Sweep unbent(const Sweep& sweep, const ReturnOptions& options, const BeamMotion&
     if (!sweep.intensities.empty()) straight.intensities.push_back(sweep.intensities[i]);
   }
   set_beam_angles(straight, std::move(angles_rad));
-  straight.angle_step_rad = sweep.angle_step_rad;  // several echoes of a beam are not at the same angle any more
+  straight.angle_step_rad = sweep.angle_step_rad;  // several echoes of a beam are no longer at the same angle
   straight.beam_times_s.clear();
   straight.beam_time_step_s = 0.0;
   straight.start_s = 0.0;

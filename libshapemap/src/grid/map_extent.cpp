@@ -14,12 +14,12 @@
 namespace shapemap {
 namespace {
 
-// See also rectangle_choice.cpp.
-constexpr double kCellsPerRange = 8.0;      // in a usual range: neighbouring beams, and the same wall seen twice, meet
-constexpr double kSideBySide = 4.0;         // beam spacings between neighbours on a surface that is seen at a slant
-constexpr double kInLine = 0.1;             // of the range, off the line through the two hits before or after
-constexpr std::int64_t kSurfaceWorth = 10;  // of a cell; one of lone hits is worth 1
-constexpr double kMostCells = 1e9;          // what is farther off is no map, and the size of the picture is refused
+// rectangle_choice.cpp holds the other constants of the extent.
+constexpr double kCellsPerRange = 8.0;  // in a usual range: neighbouring beams, and a wall seen twice, share a cell
+constexpr double kSideBySide = 4.0;     // beam spacings between neighbours on a surface that is seen at a slant
+constexpr double kInLine = 0.1;         // as a share of the range, off the line through the two points before or after
+constexpr std::int64_t kSurfaceWorth = 10;  // a surface cell is worth so many cells of lone returns
+constexpr double kMostCells = 1e9;          // points farther off are no map, and the size of the picture is refused
 
 Box box_of_sensors(const std::vector<SeenRays>& seen, const std::vector<PlacedScan>& placed) {
   Box box;
@@ -28,10 +28,10 @@ Box box_of_sensors(const std::vector<SeenRays>& seen, const std::vector<PlacedSc
   return box;
 }
 
-/// The power of two at or below the median range, 1 without any hit.
+/// Returns the power of two at or below the median range, or 1 without any return.
 double usual_range_m(const std::vector<SeenRays>& seen) {
   constexpr int kSmallest = -20;
-  constexpr std::size_t kSampled = 8;  // every eighth hit will do
+  constexpr std::size_t kSampled = 8;  // every eighth return is enough
   std::array<std::size_t, 64> counts{};
   std::size_t total = 0;
   for (const SeenRays& one : seen) {
@@ -54,7 +54,7 @@ bool are_side_by_side(const Rays& rays, std::size_t i, std::size_t k) {
   return (rays.hits_m[k] - rays.hits_m[i]).squaredNorm() <= kSideBySide * kSideBySide * spacing_m2;
 }
 
-/// Whether the line through hits i and k meets the beam of hit `at` where that hit is.
+/// Says whether the line through points i and k meets the beam of point `at` near that point.
 bool is_on_line(const Rays& rays, std::size_t i, std::size_t k, std::size_t at) {
   const Point2 along = rays.hits_m[k] - rays.hits_m[i];
   const Point2 to_line = rays.hits_m[i] - rays.from_m;
@@ -70,7 +70,7 @@ bool is_in_line(const Rays& rays, std::size_t at) {
          (at + 2 < rays.hits_m.size() && is_on_line(rays, at + 1, at + 2, at));
 }
 
-/// Which cells have hits, and what these are worth.
+/// Finds which cells have returns, and what these are worth.
 class CellWorths {
  public:
   /// `cell_m` is a power of two, so that its inverse is exact.
@@ -87,8 +87,8 @@ class CellWorths {
     for (std::size_t i = 0; i < hits_m.size(); ++i) {
       Cell& cell = at(cell_of(hits_m[i]));
       if (!seen.contradicts_map) {
-        cell.is_surface = cell.is_surface || (cell.look != 0 && cell.look != seen.look);
-        cell.look = seen.look;
+        cell.is_surface = cell.is_surface || (cell.visit != 0 && cell.visit != seen.visit);
+        cell.visit = seen.visit;
         const bool is_news = i > 0 && !(previous->is_surface && cell.is_surface);
         if (is_news && are_side_by_side(seen.rays, i - 1, i)) previous->is_surface = cell.is_surface = true;
         if (!cell.is_surface && is_in_line(seen.rays, i)) cell.is_surface = true;
@@ -109,7 +109,8 @@ class CellWorths {
 
  private:
   struct Cell {
-    std::uint32_t look = 0;  ///< that hit it last; 0: only scans that contradict the map
+    /// number of the last visit with a return here; 0 where only scans that contradict the map have one
+    std::uint32_t visit = 0;
     bool is_surface = false;
   };
   using Entry = std::pair<const std::int64_t, Cell>;
@@ -126,13 +127,13 @@ class CellWorths {
     return recent->second;
   }
 
-  /// By another look.
+  /// Says whether another visit saw this cell or one beside it.
   bool is_seen_beside(const CellIndex& index, const Cell& cell) const {
-    if (cell.look == 0) return false;
+    if (cell.visit == 0) return false;
     for (std::int64_t dx = -1; dx <= 1; ++dx) {
       for (std::int64_t dy = -1; dy <= 1; ++dy) {
         const auto beside = cells_.find(key_of({index.x + dx, index.y + dy}));
-        if (beside != cells_.end() && beside->second.look != 0 && beside->second.look != cell.look) return true;
+        if (beside != cells_.end() && beside->second.visit != 0 && beside->second.visit != cell.visit) return true;
       }
     }
     return false;
@@ -140,7 +141,7 @@ class CellWorths {
 
   double cells_per_m_;
   std::unordered_map<std::int64_t, Cell> cells_;
-  std::array<Entry*, 32 * 32> recent_{};  ///< the last cell of each residue of its indices, to spare looking it up
+  std::array<Entry*, 32 * 32> recent_{};  ///< the last cell of each residue of its indices, which spares most lookups
 };
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include "shapemap/grid/placed_rays.hpp"
 #include "shapemap/scan/placed_scan.hpp"
 
-/// Which part of the plane a picture shows. A single false reading of 900 m, or a few beams through a window, would
-/// else make a picture that is empty but for a dot at its rim.
+/// The extent of a picture is a part of the plane. A single false reading of 900 m, or a few beams through a window,
+/// would otherwise make a picture that is empty but for a dot at its rim.
 namespace shapemap {
 
 struct Box {
@@ -23,27 +23,27 @@ struct Box {
   }
 };
 
-/// What one sub-scan saw, and what it is worth as evidence.
+/// The rays of one sweep count as evidence according to its visit.
 struct SeenRays {
   Rays rays;
-  std::uint32_t look = 0;  ///< number of the look that it belongs to, from 1
+  std::uint32_t visit = 0;  ///< number of the visit that the sweep belongs to, from 1
   bool contradicts_map = false;
 };
 
-/// Holds all positions, sensors and hits.
+/// Returns the box of all scans, sensors and returns.
 Box box_of_all(const std::vector<SeenRays>& seen, const std::vector<PlacedScan>& placed);
 
-/// Holds all positions and sensors, and the hits that are certain enough for the room that they take:
+/// Returns the box of all scans and sensors, and of the returns that are certain enough for the space that they take:
 ///
 /// - The plane is divided into cells of about a tenth of the usual range, so that no length is fixed. A cell is a
-///   surface when neighbouring beams of one sub-scan end side by side in it, or in line with two more, or when hits of
-///   two looks lie in it or beside it; else it holds lone hits, which count a tenth.
-/// - The core of the map is the rectangle for which the share of what is known that it holds, less 0.03 times the
+///   surface when neighbouring beams of one sweep end side by side in it, or in line with two more, or when returns of
+///   two visits lie in it or beside it; else it holds lone returns, which count a tenth.
+/// - The core of the map is the rectangle for which the share of the known cells that it holds, less 0.03 times the
 ///   logarithm of its area, is largest: a picture that is ten times larger must show 7 % more of what is known.
-/// - Where the whole is no more than four times as large as the core, all is held, so that nothing is cut off for a
-///   small gain. Else the picture is up to twice as large as the core, to hold as much as possible of the rest.
+/// - Where the whole is no more than four times as large as the core, the box holds all, so that nothing is cut off for
+///   a small gain. Else the picture is up to twice as large as the core, to hold as much as possible of the rest.
 ///
-/// A single position cannot be checked by others, and all that it saw is held. `all` is box_of_all().
+/// A single scan cannot be checked by others, and the box holds all that it saw. `all` is box_of_all().
 Box certain_box(const std::vector<SeenRays>& seen, const std::vector<PlacedScan>& placed, const Box& all);
 
 }  // namespace shapemap

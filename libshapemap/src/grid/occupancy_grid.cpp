@@ -22,22 +22,22 @@ using MrptGrid = mrpt::maps::COccupancyGridMap2D;
 
 constexpr int kMarginCells = 4;           // so that walls at the rim stay visible
 constexpr double kMaxCells = 400e6;       // one byte each here, up to four in a coloured picture
-constexpr double kMaxCellsPerSide = 1e6;  // readers of pictures, OpenCV's too, refuse wider ones
+constexpr double kMaxCellsPerSide = 1e6;  // readers of pictures, including OpenCV, refuse wider ones
 
 std::vector<SeenRays> seen_rays(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns) {
   const std::vector<std::size_t> starts = starts_of_visits(placed);
   std::vector<SeenRays> seen;
-  std::uint32_t look = 0;
+  std::uint32_t visit = 0;
   for (std::size_t i = 0; i < placed.size(); ++i) {
-    if (starts[look] == i) ++look;
+    if (starts[visit] == i) ++visit;
     for (Rays& rays : rays_of(log, placed[i], returns)) {
-      seen.push_back({std::move(rays), look, placed[i].consistency.contradicts_map});
+      seen.push_back({std::move(rays), visit, placed[i].consistency.contradicts_map});
     }
   }
   return seen;
 }
 
-/// Extent in whole cells; cell (0, 0) has its lower left corner at the origin of the map frame.
+/// An extent counts whole cells; cell (0, 0) has its lower left corner at the origin of the map frame.
 struct Extent {
   double left = 0.0;
   double bottom = 0.0;
@@ -65,7 +65,7 @@ void check_size(const Extent& extent, double resolution_m) {
   throw OutputError(why.str());
 }
 
-/// Evidence for a cell, in MRPT's log-odds of being free. The certainties are those of MRPT's own insertion.
+/// Evidence for a cell is in MRPT's log-odds of being free. The certainties are those of MRPT's own insertion.
 struct Evidence {
   MrptGrid::cellType free = std::max<MrptGrid::cellType>(1, MrptGrid::p2l(0.65F));
   MrptGrid::cellType occupied = static_cast<MrptGrid::cellType>(3 * free);
@@ -73,7 +73,7 @@ struct Evidence {
   MrptGrid::cellType occupied_limit = static_cast<MrptGrid::cellType>(MrptGrid::OCCGRID_CELLTYPE_MIN + occupied);
 };
 
-/// What the grid says before rays are drawn that must not change it.
+/// This copy keeps the state of the grid before rays are drawn that must not change it.
 class GridBefore {
  public:
   explicit GridBefore(const MrptGrid& grid) : width_(grid.getSizeX()) {
@@ -82,7 +82,7 @@ class GridBefore {
       cells_.insert(cells_.end(), row, row + width_);
     }
   }
-  /// Nobody looked, or as many saw it free as occupied.
+  /// A cell is unknown where no beam came, or as many saw it free as occupied.
   bool is_unknown(const Eigen::Vector2i& cell) const { return at(cell) == 0; }
   bool is_occupied(const Eigen::Vector2i& cell) const { return at(cell) < 0; }
 
@@ -102,7 +102,7 @@ class Canvas {
         resolution_m_(resolution_m),
         width_(static_cast<int>(extent.width())),
         height_(static_cast<int>(extent.height())) {
-    // Cells of side 1: MRPT keeps limits as 32-bit floats, which whole numbers survive.
+    // Cells have side 1 here: MRPT keeps limits as 32-bit floats, in which whole numbers are exact.
     grid_.setSize(0.0F, static_cast<float>(extent.width()), 0.0F, static_cast<float>(extent.height()), 1.0F);
   }
 
@@ -118,8 +118,8 @@ class Canvas {
   }
   const MrptGrid& grid() const { return grid_; }
 
-  /// One beam by Bresenham's line: free up to the hit, occupied there. MRPT's own insertion of a scan is not used:
-  /// it spaces n beams by aperture / n rather than aperture / (n - 1), does not know tilted lasers, and lets long rays
+  /// Draws one beam along Bresenham's line: free up to the return, occupied there. MRPT's own insertion of a scan
+  /// spaces n beams by aperture / n rather than aperture / (n - 1), does not know tilted lasers, and lets long rays
   /// drift off by a cell.
   void insert_ray(const Eigen::Vector2i& from, const Eigen::Vector2i& hit) {
     if (!holds(hit)) {
@@ -130,7 +130,7 @@ class Canvas {
     mark_occupied(hit);
   }
 
-  /// Draws a beam only where nothing is known, and up to the first surface that is.
+  /// Draws a beam only where nothing is known, and up to the first known surface.
   void fill_gaps(const GridBefore& before, const Eigen::Vector2i& from, const Eigen::Vector2i& hit) {
     bool comes_through = true;
     while_cell_before(from, hit, [&](const Eigen::Vector2i& cell) {
@@ -140,8 +140,8 @@ class Canvas {
     if (comes_through && holds(hit) && before.is_unknown(hit)) mark_occupied(hit);
   }
 
-  /// The same of a beam that hits nothing. It is no evidence of a gap in a wall, and stops also where two cells of one
-  /// touch at a corner. Calls `visit` with each cell that was unknown.
+  /// Draws a beam that hit nothing in the same way. It is no evidence of a gap in a wall, and stops also where two
+  /// cells of one touch at a corner. Calls `visit` with each cell that was unknown.
   template <class Visit>
   void fill_open(const GridBefore& before, const Eigen::Vector2i& from, const Eigen::Vector2i& end,
                  const Visit& visit) {
@@ -161,7 +161,7 @@ class Canvas {
     MrptGrid::updateCell_fast_free(grid_.getRow(cell.y()) + cell.x(), evidence_.free, evidence_.free_limit);
     return true;
   }
-  /// False where a surface is known.
+  /// Returns false where a surface is known.
   bool fill_gap(const GridBefore& before, const Eigen::Vector2i& cell) {
     if (before.is_occupied(cell)) return false;
     return !before.is_unknown(cell) || mark_free(cell);
@@ -178,7 +178,7 @@ class Canvas {
   MrptGrid grid_;
 };
 
-/// Those that contradict the rest of the map come last, if that is asked for.
+/// Draws scans that contradict the rest of the map last, if the option asks for that.
 void draw_hits(Canvas& canvas, const std::vector<SeenRays>& seen, Contradicting contradicting) {
   const auto draw = [&](const SeenRays& one, const auto& draw_beam) {
     const Eigen::Vector2i from = canvas.cell_of(one.rays.from_m);
@@ -199,7 +199,7 @@ void draw_hits(Canvas& canvas, const std::vector<SeenRays>& seen, Contradicting 
   }
 }
 
-/// Calls `visit(from, end)` for each beam that hit nothing, of scans that go with the rest of the map.
+/// Calls `visit(from, end)` for each beam that hit nothing, of scans that are consistent with the rest of the map.
 template <class Visit>
 void for_each_open_ray(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns,
                        const OccupancyGridOptions& options, const Visit& visit) {

@@ -7,7 +7,7 @@
 namespace shapemap {
 namespace {
 
-/// Calls `visit(sweep, map_from_sweep)` for each sub-scan of the position.
+/// Calls `visit(sweep, map_from_sweep)` for each sweep of the scan.
 template <class Visit>
 void for_each_sweep(const Log& log, const PlacedScan& place, const Visit& visit) {
   const std::vector<Sweep>& sweeps = log.scans.at(place.scan_index).sweeps;

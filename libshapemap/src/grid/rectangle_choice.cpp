@@ -9,18 +9,18 @@
 namespace shapemap {
 namespace {
 
-constexpr double kSharePerGrowth = 0.03;  // of what is known, for a picture that is e times larger
-constexpr double kWhole = 4.0;            // all is held where that makes the picture no larger than so many cores
-constexpr double kSlack = 2.0;            // else as much as a picture of so many cores holds
-constexpr double kLineGrowth = 1.25;      // of the distances from the positions at which the picture may end
+constexpr double kSharePerGrowth = 0.03;  // as a share of the known cells, for a picture that is e times larger
+constexpr double kWhole = 4.0;            // the picture holds all where that makes it no larger than so many cores
+constexpr double kSlack = 2.0;            // otherwise it holds as much as fits into so many cores
+constexpr double kLineGrowth = 1.25;      // growth of the distances from the scans at which the picture may end
 
-/// In whole cells, so that near lines are one cell apart.
+/// Limits are whole cells, so that near lines are one cell apart.
 std::int64_t next_limit(std::int64_t limit) {
   return std::max(limit + 1, static_cast<std::int64_t>(std::ceil(kLineGrowth * static_cast<double>(limit))));
 }
 
-/// Where the picture may end on one side: distances from the positions, in cells, ascending. Each is that of the
-/// farthest cell with hits before the next; the first is 0.
+/// The lines at which the picture may end on one side: distances from the scans, in cells, ascending. Each is that of
+/// the farthest cell with returns before the next; the first is 0.
 class Side {
  public:
   void add(std::int64_t distance) {
@@ -39,7 +39,7 @@ class Side {
   }
   std::int64_t count() const { return static_cast<std::int64_t>(lines_.size()); }
   std::int64_t distance(std::int64_t line) const { return lines_[static_cast<std::size_t>(line)]; }
-  /// The first that holds a cell at this distance.
+  /// Returns the first line that holds a cell at this distance.
   std::int64_t line_for(std::int64_t distance) const {
     return std::lower_bound(lines_.begin(), lines_.end(), distance) - lines_.begin();
   }
@@ -49,22 +49,22 @@ class Side {
   std::vector<std::int64_t> lines_{0};
 };
 
-/// The choice among all rectangles that hold the positions and end at lines of the four sides.
+/// Chooses among all rectangles that hold the scans and end at lines of the four sides.
 class RectangleChoice {
  public:
   RectangleChoice(const std::vector<KnownCell>& cells, const Rectangle& scans, double softening_cells)
-      : positions_(scans), softening_cells_(softening_cells) {
+      : scans_(scans), softening_cells_(softening_cells) {
     for (const auto& [cell, worth] : cells) {
-      left_.add(positions_.left - cell.x);
-      right_.add(cell.x - positions_.right);
-      bottom_.add(positions_.bottom - cell.y);
-      top_.add(cell.y - positions_.top);
+      left_.add(scans_.left - cell.x);
+      right_.add(cell.x - scans_.right);
+      bottom_.add(scans_.bottom - cell.y);
+      top_.add(cell.y - scans_.top);
     }
     for (Side* side : {&left_, &right_, &bottom_, &top_}) side->finish();
     sum_up(cells);
   }
 
-  /// In cells; nothing where all is to be held.
+  /// Returns the best rectangle in cells, or nothing where the picture is to hold all.
   std::optional<Rectangle> best() const {
     const std::int64_t all = worth_inside(whole());
     double most = -std::numeric_limits<double>::infinity();
@@ -84,14 +84,14 @@ class RectangleChoice {
       const std::int64_t more = worth_inside(lines) - worth_inside(chosen);
       if (more > 0 || (more == 0 && area(lines) < area(chosen))) chosen = lines;
     });
-    return Rectangle{positions_.left - left_.distance(chosen.left), positions_.right + right_.distance(chosen.right),
-                     positions_.bottom - bottom_.distance(chosen.bottom), positions_.top + top_.distance(chosen.top)};
+    return Rectangle{scans_.left - left_.distance(chosen.left), scans_.right + right_.distance(chosen.right),
+                     scans_.bottom - bottom_.distance(chosen.bottom), scans_.top + top_.distance(chosen.top)};
   }
 
  private:
   Rectangle whole() const { return {left_.count() - 1, right_.count() - 1, bottom_.count() - 1, top_.count() - 1}; }
 
-  /// Of at least the lines of `least`.
+  /// Visits all rectangles that hold at least the lines of `least`.
   template <class Visit>
   void for_each_rectangle(const Rectangle& least, const Visit& visit) const {
     const Rectangle last = whole();
@@ -106,14 +106,12 @@ class RectangleChoice {
   }
 
   double area(const Rectangle& lines) const {
-    const std::int64_t width =
-        positions_.right - positions_.left + left_.distance(lines.left) + right_.distance(lines.right);
-    const std::int64_t height =
-        positions_.top - positions_.bottom + bottom_.distance(lines.bottom) + top_.distance(lines.top);
+    const std::int64_t width = scans_.right - scans_.left + left_.distance(lines.left) + right_.distance(lines.right);
+    const std::int64_t height = scans_.top - scans_.bottom + bottom_.distance(lines.bottom) + top_.distance(lines.top);
     return (static_cast<double>(width) + softening_cells_) * (static_cast<double>(height) + softening_cells_);
   }
 
-  /// Of the four corners of the table of sums.
+  /// Computes the sum from the four corners of the table of sums.
   std::int64_t worth_inside(const Rectangle& lines) const {
     const std::int64_t first_column = left_.count() - 1 - lines.left;
     const std::int64_t last_column = left_.count() + lines.right;
@@ -128,17 +126,16 @@ class RectangleChoice {
   }
   std::int64_t sum_at(std::int64_t column, std::int64_t row) const { return sums_[index_of(column, row)]; }
 
-  /// Column 0 and row 0 are empty; the positions are in column left_.count() and row bottom_.count().
+  /// Column 0 and row 0 are empty; the scans are in column left_.count() and row bottom_.count().
   void sum_up(const std::vector<KnownCell>& cells) {
     const std::int64_t num_columns = left_.count() + right_.count();
     const std::int64_t num_rows = bottom_.count() + top_.count();
     sums_.assign(static_cast<std::size_t>(num_columns * num_rows), 0);
     for (const auto& [cell, worth] : cells) {
-      const std::int64_t column = left_.count() +
-                                  right_.line_for(std::max<std::int64_t>(0, cell.x - positions_.right)) -
-                                  left_.line_for(std::max<std::int64_t>(0, positions_.left - cell.x));
-      const std::int64_t row = bottom_.count() + top_.line_for(std::max<std::int64_t>(0, cell.y - positions_.top)) -
-                               bottom_.line_for(std::max<std::int64_t>(0, positions_.bottom - cell.y));
+      const std::int64_t column = left_.count() + right_.line_for(std::max<std::int64_t>(0, cell.x - scans_.right)) -
+                                  left_.line_for(std::max<std::int64_t>(0, scans_.left - cell.x));
+      const std::int64_t row = bottom_.count() + top_.line_for(std::max<std::int64_t>(0, cell.y - scans_.top)) -
+                               bottom_.line_for(std::max<std::int64_t>(0, scans_.bottom - cell.y));
       sums_[index_of(column, row)] += worth;
     }
     for (std::int64_t row = 1; row < num_rows; ++row) {
@@ -148,7 +145,7 @@ class RectangleChoice {
     }
   }
 
-  Rectangle positions_;
+  Rectangle scans_;
   double softening_cells_;
   Side left_;
   Side right_;

@@ -12,7 +12,7 @@ struct CellIndex {
   std::int64_t y = 0;
 };
 
-/// Cells from left to right and from bottom to top, the last ones included.
+/// The rectangle has the cells from left to right and from bottom to top, the last ones included.
 struct Rectangle {
   std::int64_t left = 0;
   std::int64_t right = 0;
@@ -24,15 +24,15 @@ struct Rectangle {
   }
 };
 
-/// A cell in which something was seen, and how much that counts.
+/// A known cell is one in which something was seen, with its worth as evidence.
 struct KnownCell {
   CellIndex index;
   std::int64_t worth = 1;
 };
 
-/// The rectangle around `positions` that is worth its size, as certain_box() says; nothing where it is best to hold
-/// all. `softening_cells` is added to width and height, so that a map without width (a straight way) is not taken for
-/// infinitely small. The order of the cells does not matter.
+/// Returns the rectangle around `scans` that is worth its size, as certain_box() says, or nothing where it is best to
+/// hold all. `softening_cells` is added to width and height, so that a map without width (a straight way) does not
+/// count as infinitely small. The order of the cells does not matter.
 std::optional<Rectangle> best_rectangle(const std::vector<KnownCell>& cells, const Rectangle& scans,
                                         double softening_cells);
 

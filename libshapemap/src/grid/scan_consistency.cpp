@@ -13,11 +13,11 @@
 namespace shapemap {
 namespace {
 
-constexpr double kFarthestCell = 1e8;      // what is farther off is no map, and would not fit the grid's numbers
+constexpr double kFarthestCell = 1e8;      // points farther off are no map, and would not fit the grid's numbers
 constexpr double kBesideSensor_m = 0.5;    // in a doorway, a jamb that is a little off hides half of the view
-constexpr int kBeforeHit = 1;              // cells: a surface is rough, and its range noisy
-constexpr std::uint32_t kSurfaceOdds = 4;  // a thin or mirroring surface stops at least every fourth look
-constexpr std::uint32_t kWallOdds = 4;     // and a wall nearly all: others are glass, or edges
+constexpr int kBeforeHit = 1;              // in cells: a surface is rough, and its range noisy
+constexpr std::uint32_t kSurfaceOdds = 4;  // a thin or mirroring surface stops at least every fourth visit
+constexpr std::uint32_t kWallOdds = 4;     // and a wall nearly all of them: others are glass, or edges
 
 struct CellRays {
   Eigen::Vector2i from;
@@ -36,14 +36,14 @@ class Judge {
         options_(options),
         reach_(static_cast<int>(std::lround(options.tolerance_m / options.cell_m))),
         beside_(static_cast<int>(std::lround(kBesideSensor_m / options.cell_m))),
-        min_looks_(static_cast<std::uint32_t>(options.min_looks)) {}
+        min_visits_(static_cast<std::uint32_t>(options.min_visits)) {}
 
   std::vector<ScanConsistency> run() {
     const std::vector<std::size_t> starts = starts_of_visits(placed_);
     for (std::size_t i = 0; i + 1 < starts.size(); ++i) draw(starts[i], starts[i + 1], number_of(i));
     std::vector<ScanConsistency> all;
     for (std::size_t i = 0; i + 1 < starts.size(); ++i) {
-      // Once more, so that the look's own marks are the last ones and can be told from the others'.
+      // The visit is drawn once more, so that its own marks are the last ones and can be told from the others'.
       draw_own(starts[i], starts[i + 1], number_of(i));
       for (std::size_t k = starts[i]; k < starts[i + 1]; ++k) all.push_back(judged(placed_[k], number_of(i)));
     }
@@ -51,7 +51,7 @@ class Judge {
   }
 
  private:
-  static std::uint32_t number_of(std::size_t look) { return static_cast<std::uint32_t>(look + 1); }
+  static std::uint32_t number_of(std::size_t visit) { return static_cast<std::uint32_t>(visit + 1); }
 
   bool is_on_grid(const Point2& p_m) const {
     return p_m.cwiseAbs().maxCoeff() / options_.cell_m < kFarthestCell;  // false for NaN
@@ -89,62 +89,62 @@ class Judge {
     }
   }
 
-  void draw(std::size_t first, std::size_t last, std::uint32_t look) {
+  void draw(std::size_t first, std::size_t last, std::uint32_t visit) {
     trace(
-        first, last, [look](VisitCell& cell) { cell.pass(look); }, [look](VisitCell& cell) { cell.hit(look); });
+        first, last, [visit](VisitCell& cell) { cell.pass(visit); }, [visit](VisitCell& cell) { cell.hit(visit); });
   }
 
-  void draw_own(std::size_t first, std::size_t last, std::uint32_t look) {
+  void draw_own(std::size_t first, std::size_t last, std::uint32_t visit) {
     trace(
-        first, last, [look](VisitCell& cell) { cell.last_pass = look; },
-        [look](VisitCell& cell) { cell.last_hit = look; });
+        first, last, [visit](VisitCell& cell) { cell.last_pass = visit; },
+        [visit](VisitCell& cell) { cell.last_hit = visit; });
   }
 
-  /// Nearly all other looks that came to the cell ended there.
-  bool is_wall(const Eigen::Vector2i& at, std::uint32_t look) {
+  /// Says whether nearly all other visits that reached the cell ended there.
+  bool is_wall(const Eigen::Vector2i& at, std::uint32_t visit) {
     const VisitCell& cell = grid_.seen(at);
-    const std::uint32_t hits = cell.other_hits(look);
-    return hits >= min_looks_ && hits >= kWallOdds * cell.other_passes(look);
+    const std::uint32_t hits = cell.other_hits(visit);
+    return hits >= min_visits_ && hits >= kWallOdds * cell.other_passes(visit);
   }
 
-  std::uint32_t hits_around(const Eigen::Vector2i& at, int reach, std::uint32_t look) {
+  std::uint32_t hits_around(const Eigen::Vector2i& at, int reach, std::uint32_t visit) {
     std::uint32_t hits = 0;
     for (int y = -reach; y <= reach; ++y) {
-      for (int x = -reach; x <= reach; ++x) hits += grid_.seen(at + Eigen::Vector2i(x, y)).other_hits(look);
+      for (int x = -reach; x <= reach; ++x) hits += grid_.seen(at + Eigen::Vector2i(x, y)).other_hits(visit);
     }
     return hits;
   }
 
-  /// Whether the beam meets a surface, leaves it behind and ends farther on. Beams that graze a wall which is a little
-  /// off run beside it to their end, and do not leave it.
-  bool goes_through(const Eigen::Vector2i& from, const Eigen::Vector2i& end, std::uint32_t look) {
+  /// Says whether the beam meets a surface, leaves it behind and ends farther on. Beams that graze a wall which is a
+  /// little off run beside it to their end, and do not leave it.
+  bool goes_through(const Eigen::Vector2i& from, const Eigen::Vector2i& end, std::uint32_t visit) {
     bool met = false;
     bool through = false;
     for_each_cell_before(from, end, [&](const Eigen::Vector2i& cell) {
       if (through || (end - cell).cwiseAbs().maxCoeff() <= 2 * reach_) return;
       if (!met) {
-        met = (cell - from).cwiseAbs().maxCoeff() >= beside_ && is_wall(cell, look);
+        met = (cell - from).cwiseAbs().maxCoeff() >= beside_ && is_wall(cell, visit);
       } else {
-        through = hits_around(cell, reach_, look) == 0;
+        through = hits_around(cell, reach_, visit) == 0;
       }
     });
     return through;
   }
 
-  BeamFate fate_of(const Eigen::Vector2i& from, const Eigen::Vector2i& end, std::uint32_t look) {
-    if (goes_through(from, end, look)) return BeamFate::kThrough;
-    const std::uint32_t hits = hits_around(end, reach_, look);
-    const std::uint32_t passes = grid_.seen(end).other_passes(look);
+  BeamFate fate_of(const Eigen::Vector2i& from, const Eigen::Vector2i& end, std::uint32_t visit) {
+    if (goes_through(from, end, visit)) return BeamFate::kThrough;
+    const std::uint32_t hits = hits_around(end, reach_, visit);
+    const std::uint32_t passes = grid_.seen(end).other_passes(visit);
     if (hits > 0 && kSurfaceOdds * hits >= passes) return BeamFate::kAgree;
-    return passes >= min_looks_ ? BeamFate::kInFree : BeamFate::kUnknown;
+    return passes >= min_visits_ ? BeamFate::kInFree : BeamFate::kUnknown;
   }
 
-  ScanConsistency judged(const PlacedScan& place, std::uint32_t look) {
+  ScanConsistency judged(const PlacedScan& place, std::uint32_t visit) {
     ScanConsistency consistency;
     std::size_t beams = 0;
     for (const CellRays& rays : rays_in_cells(place)) {
       for (const Eigen::Vector2i& end : rays.hits) {
-        const BeamFate fate = fate_of(rays.from, end, look);
+        const BeamFate fate = fate_of(rays.from, end, visit);
         if (fate == BeamFate::kAgree) consistency.agree += 1.0;
         if (fate == BeamFate::kThrough) consistency.through += 1.0;
         if (fate == BeamFate::kInFree) consistency.in_free += 1.0;
@@ -166,8 +166,8 @@ class Judge {
   const ReturnOptions& returns_;
   const ConsistencyOptions& options_;
   int reach_;   ///< the tolerance, in cells
-  int beside_;  ///< what is nearer to a sensor is not told from its own place
-  std::uint32_t min_looks_;
+  int beside_;  ///< in cells; surfaces nearer to a sensor are not judged from its own place
+  std::uint32_t min_visits_;
   VisitGrid grid_;
 };
 
@@ -182,8 +182,8 @@ std::vector<ScanConsistency> scan_consistencies(const Log& log, const std::vecto
 void judge_consistency(const Log& log, const ReturnOptions& returns, const ConsistencyOptions& options,
                        std::vector<Component>& components) {
   for (Component& component : components) {
-    const std::vector<ScanConsistency> agreements = scan_consistencies(log, component.scans, returns, options);
-    for (std::size_t i = 0; i < agreements.size(); ++i) component.scans[i].consistency = agreements[i];
+    const std::vector<ScanConsistency> consistencies = scan_consistencies(log, component.scans, returns, options);
+    for (std::size_t i = 0; i < consistencies.size(); ++i) component.scans[i].consistency = consistencies[i];
   }
 }
 

@@ -8,26 +8,26 @@
 #include <memory>
 #include <unordered_map>
 
-/// How many looks ended in each cell of the plane, and how many went through.
+/// The grid counts how many visits ended in each cell of the plane, and how many passed through.
 namespace shapemap {
 
 struct VisitCell {
   std::uint32_t hits = 0;
   std::uint32_t passes = 0;
-  std::uint32_t last_hit = 0;  ///< number of the look that hit it last
+  std::uint32_t last_hit = 0;  ///< number of the last visit with a return here
   std::uint32_t last_pass = 0;
 
-  void hit(std::uint32_t look) {
-    if (last_hit != look) ++hits;
-    last_hit = look;
+  void hit(std::uint32_t visit) {
+    if (last_hit != visit) ++hits;
+    last_hit = visit;
   }
-  void pass(std::uint32_t look) {
-    if (last_pass != look) ++passes;
-    last_pass = look;
+  void pass(std::uint32_t visit) {
+    if (last_pass != visit) ++passes;
+    last_pass = visit;
   }
-  /// Of the looks but `look`, which must be the last that hit or passed where it did.
-  std::uint32_t other_hits(std::uint32_t look) const { return hits - (last_hit == look ? 1U : 0U); }
-  std::uint32_t other_passes(std::uint32_t look) const { return passes - (last_pass == look ? 1U : 0U); }
+  /// Counts all visits but `visit`, which must be the last that was drawn.
+  std::uint32_t other_hits(std::uint32_t visit) const { return hits - (last_hit == visit ? 1U : 0U); }
+  std::uint32_t other_passes(std::uint32_t visit) const { return passes - (last_pass == visit ? 1U : 0U); }
 };
 
 /// An endless grid, in tiles that exist where something was seen.
@@ -44,7 +44,7 @@ class VisitGrid {
     return (*last_tile_)[index_of(cell)];
   }
 
-  /// An empty cell where there is no tile.
+  /// Returns an empty cell where there is no tile.
   const VisitCell& seen(const Eigen::Vector2i& cell) {
     static const VisitCell empty;
     const std::int64_t key = key_of(cell);

@@ -17,21 +17,21 @@ namespace {
 
 constexpr double kSideBySide = 6.0;          // beam spacings between neighbours on one surface that is seen at a slant
 constexpr double kMostNoises = 4.0;          // points on a straight stretch are no farther off it than so many sigma
-constexpr double kLeastTolerance_m = 1e-3;   // of ranges that are rounded to millimetres, or simulated without noise
+constexpr double kLeastTolerance_m = 1e-3;   // for ranges that are rounded to millimetres, or simulated without noise
 constexpr std::size_t kLeastPoints = 6;      // of a straight stretch: two always lie on a line, three often nearly do
-constexpr double kNear_rad = 5 * kDegree;    // walls of one direction, and errors of headings
-constexpr double kRival_rad = 10 * kDegree;  // what is nearer than this may be the same direction's
-constexpr int kBins = 360;                   // of a quarter of a degree
+constexpr double kNear_rad = 5 * kDegree;    // walls of one direction, and errors of headings, differ by less
+constexpr double kApart_rad = 10 * kDegree;  // walls that differ by less may have the same direction
+constexpr int kBins = 360;                   // each is a quarter of a degree wide
 
 struct Stretch {
-  double angle_rad = 0.0;  ///< modulo 90 degrees
+  double angle_rad = 0.0;  ///< taken modulo 90 degrees
   double length_m = 0.0;
   double weight = 0.0;
 };
 
 double quarter_turn_wrapped(double angle_rad) { return std::remainder(angle_rad, kPi / 2); }
 
-/// The hits of one sub-scan that lie side by side.
+/// The returns of one sweep that lie side by side.
 using Run = std::vector<Point2>;
 
 std::vector<Run> runs_of(const Rays& rays) {
@@ -46,7 +46,8 @@ std::vector<Run> runs_of(const Rays& rays) {
   return runs;
 }
 
-/// Distances of points from the line between their neighbours; they spread by noise on straight walls, which most are.
+/// Adds the distances of points from the line between their neighbours. On straight walls, which most are, they spread
+/// by noise alone.
 void add_deviations(const Run& run, std::vector<double>& deviations_m) {
   for (std::size_t i = 1; i + 1 < run.size(); ++i) {
     const Point2 along = run[i + 1] - run[i - 1];
@@ -56,7 +57,7 @@ void add_deviations(const Run& run, std::vector<double>& deviations_m) {
   }
 }
 
-/// Of single points, from the median of the deviations, which have the noise of three points in them.
+/// Returns the noise of single points from the median of the deviations, which have the noise of three points in them.
 double noise_m(std::vector<double> deviations_m) {
   if (deviations_m.empty()) return 0.0;
   const auto middle = deviations_m.begin() + static_cast<std::ptrdiff_t>(deviations_m.size() / 2);
@@ -113,7 +114,7 @@ void add_stretches(const Run& run, double tolerance_m, std::vector<Stretch>& str
   }
 }
 
-/// Half of the sum is in values that are not larger.
+/// Returns the value such that half of the sum is in values that are not larger.
 double middle_of_sum(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const double total = std::accumulate(values.begin(), values.end(), 0.0);
@@ -125,24 +126,24 @@ double middle_of_sum(std::vector<double> values) {
   return 0.0;
 }
 
-/// As the header says; `looks` holds the stretches of each look.
-std::vector<Stretch> weighed(std::vector<std::vector<Stretch>> looks) {
+/// Weighs the stretches as wall_direction() describes; `visits` holds the stretches of each visit.
+std::vector<Stretch> weighed(std::vector<std::vector<Stretch>> visits) {
   std::vector<double> lengths_m;
-  for (const std::vector<Stretch>& look : looks) {
-    for (const Stretch& stretch : look) lengths_m.push_back(stretch.length_m);
+  for (const std::vector<Stretch>& visit : visits) {
+    for (const Stretch& stretch : visit) lengths_m.push_back(stretch.length_m);
   }
   const double usual_m = middle_of_sum(std::move(lengths_m));
-  std::vector<double> totals(looks.size(), 0.0);
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    for (Stretch& stretch : looks[i]) {
+  std::vector<double> totals(visits.size(), 0.0);
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    for (Stretch& stretch : visits[i]) {
       stretch.weight = stretch.length_m * stretch.length_m / (stretch.length_m + usual_m);
       totals[i] += stretch.weight;
     }
   }
   const double usual_total = middle_of_sum(totals);
   std::vector<Stretch> all;
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    for (Stretch& stretch : looks[i]) {
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    for (Stretch& stretch : visits[i]) {
       stretch.weight /= totals[i] + usual_total;
       all.push_back(stretch);
     }
@@ -150,7 +151,7 @@ std::vector<Stretch> weighed(std::vector<std::vector<Stretch>> looks) {
   return all;
 }
 
-/// What is within kNear_rad of an angle.
+/// Returns the weight within kNear_rad of an angle.
 double weight_near(const std::vector<Stretch>& stretches, double angle_rad) {
   double weight = 0.0;
   for (const Stretch& stretch : stretches) {
@@ -159,7 +160,7 @@ double weight_near(const std::vector<Stretch>& stretches, double angle_rad) {
   return weight;
 }
 
-/// The mean of what is within kNear_rad of an angle.
+/// Returns the mean direction within kNear_rad of an angle.
 double mean_near(const std::vector<Stretch>& stretches, double angle_rad) {
   double sum = 0.0;
   double weight = 0.0;
@@ -183,8 +184,8 @@ WallDirection direction_of(const std::vector<Stretch>& stretches) {
   const auto best = std::max_element(near.begin(), near.end());
   const double mode_rad = static_cast<double>(best - near.begin()) * bin_rad;
   for (int i = 0; i < kBins; ++i) {
-    if (std::abs(quarter_turn_wrapped(i * bin_rad - mode_rad)) < kRival_rad) continue;
-    found.rival_share = std::max(found.rival_share, near[static_cast<std::size_t>(i)] / total);
+    if (std::abs(quarter_turn_wrapped(i * bin_rad - mode_rad)) < kApart_rad) continue;
+    found.second_share = std::max(found.second_share, near[static_cast<std::size_t>(i)] / total);
   }
   found.share = *best / total;
   found.angle_rad = quarter_turn_wrapped(mode_rad);
@@ -208,11 +209,11 @@ WallDirection wall_direction(const Log& log, const std::vector<PlacedScan>& plac
     }
   }
   const double tolerance_m = std::max(kLeastTolerance_m, kMostNoises * noise_m(std::move(deviations_m)));
-  std::vector<std::vector<Stretch>> looks(runs.size());
+  std::vector<std::vector<Stretch>> visits(runs.size());
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    for (const Run& run : runs[i]) add_stretches(run, tolerance_m, looks[i]);
+    for (const Run& run : runs[i]) add_stretches(run, tolerance_m, visits[i]);
   }
-  return direction_of(weighed(std::move(looks)));
+  return direction_of(weighed(std::move(visits)));
 }
 
 std::vector<WallDirection> align_walls(const Log& log, const ReturnOptions& returns,

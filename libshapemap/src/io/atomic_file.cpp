@@ -23,7 +23,6 @@ namespace {
   throw OutputError(path + ": " + what + ": " + std::strerror(error));
 }
 
-/// Owns a file descriptor.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -40,14 +39,14 @@ class Descriptor {
   int fd_;
 };
 
-/// The file that a symbolic link leads to, so that the link itself stays.
+/// Returns the file that a symbolic link leads to, so that the link itself stays.
 std::string resolved(const std::string& path) {
   const std::unique_ptr<char, decltype(&std::free)> target(::realpath(path.c_str(), nullptr), &std::free);
   return target ? std::string(target.get()) : path;
 }
 
 std::string beside(const std::string& path) {
-  static std::atomic<unsigned> counter{0};  // names only; no state that a result could depend on
+  static std::atomic<unsigned> counter{0};  // counts names only, so that no result depends on it
   const std::filesystem::path full(path);
   const std::string name = "." + full.stem().string() + "." + std::to_string(::getpid()) + "-" +
                            std::to_string(counter++) + full.extension().string();
@@ -58,7 +57,7 @@ bool renamed(const std::string& from, const std::string& to, unsigned flags) {
   return ::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), flags) == 0;
 }
 
-/// Of a file system, or a kernel, that can do nothing but rename.
+/// Recognises a file system, or a kernel, that can do nothing but rename.
 bool is_unknown_flag(int error) { return error == EINVAL || error == ENOSYS || error == EOPNOTSUPP; }
 
 std::string create_beside(const std::string& path) {
@@ -126,10 +125,10 @@ void AtomicFile::replace() {
 void AtomicFile::create() {
   bool is_done = renamed(temporary_path_, path_, RENAME_NOREPLACE);
   if (!is_done && is_unknown_flag(errno)) {
-    // A second name is refused as well when it is taken.
+    // A hard link is refused as well when its name is taken.
     is_done = ::link(temporary_path_.c_str(), path_.c_str()) == 0;
     if (is_done) ::unlink(temporary_path_.c_str());
-    // Some file systems have no second names either: what is left is to look first.
+    // Some file systems have no hard links either, so that the name can only be checked first.
     if (!is_done && errno != EEXIST) {
       const bool is_taken = ::access(path_.c_str(), F_OK) == 0;
       is_done = !is_taken && std::rename(temporary_path_.c_str(), path_.c_str()) == 0;

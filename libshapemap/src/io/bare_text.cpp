@@ -22,7 +22,7 @@ class BareReader {
     LaserChoice choice(options_.sensor_label);
     while (const std::optional<std::string_view> line = lines_.next()) {
       Words words(line->substr(0, line->find('#')), ',');
-      if (words.count_left() > 0 && choice.takes(kLabel, true)) add(read_scan(words));
+      if (words.count_left() > 0 && choice.takes(kLabel, true)) add(read_sweep(words));
     }
     choice.report(source_.path(), log_);
     finish_log(source_, log_);
@@ -31,7 +31,7 @@ class BareReader {
   }
 
  private:
-  Sweep read_scan(Words& words) {
+  Sweep read_sweep(Words& words) {
     const std::size_t num_beams = words.count_left();
     if (num_beams < 2) throw lines_.error("one number, expected a scan of two or more");
     if (num_beams_ == 0) num_beams_ = num_beams;
@@ -58,7 +58,7 @@ class BareReader {
     const auto wanted = static_cast<std::size_t>(options_.sweeps_per_scan);
     if (log_.scans.empty() || log_.scans.back().sweeps.size() == wanted) {
       Scan scan;
-      scan.timestamp_s = static_cast<double>(log_.scans.size());  // nothing else is known
+      scan.timestamp_s = static_cast<double>(log_.scans.size());  // the format has no times
       log_.scans.push_back(std::move(scan));
     }
     std::vector<Sweep>& sweeps = log_.scans.back().sweeps;

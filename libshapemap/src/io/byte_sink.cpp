@@ -10,7 +10,7 @@
 namespace shapemap {
 namespace {
 
-constexpr std::size_t kLargestPiece = 1U << 20U;  // zlib counts in unsigned int
+constexpr std::size_t kLargestChunk = 1U << 20U;  // zlib counts in unsigned int
 
 std::string reason() { return errno != 0 ? std::strerror(errno) : "compression failed"; }
 
@@ -28,7 +28,7 @@ ByteSink::~ByteSink() {
 
 void ByteSink::write(std::string_view bytes) {
   while (!bytes.empty()) {
-    const std::size_t count = std::min(bytes.size(), kLargestPiece);
+    const std::size_t count = std::min(bytes.size(), kLargestChunk);
     errno = 0;
     if (gzwrite(stream_, bytes.data(), static_cast<unsigned>(count)) != static_cast<int>(count)) {
       throw OutputError(path_ + ": cannot be written: " + reason());

@@ -10,12 +10,12 @@
 
 namespace shapemap {
 
-/// A file that is written piece by piece, gzip-compressed or not, and appears whole or not at all.
+/// A file that is written in chunks, gzip-compressed or not, and appears whole or not at all.
 class ByteSink {
  public:
   enum class Compression { kNone, kGzip };
 
-  /// Throws OutputError, as all functions here.
+  /// Throws OutputError, as all functions here do.
   ByteSink(const std::string& path, Compression compression);
   ~ByteSink();
   ByteSink(const ByteSink&) = delete;

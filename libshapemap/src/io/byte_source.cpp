@@ -13,7 +13,7 @@ namespace shapemap {
 namespace {
 
 constexpr std::size_t kChunk = 1U << 16U;
-constexpr int kGzipOnly = 16 + MAX_WBITS;  // zlib: expect a gzip header, largest window
+constexpr int kGzipOnly = 16 + MAX_WBITS;  // tells zlib to expect a gzip header and the largest window
 
 bool starts_like_gzip(const char* bytes, std::size_t count) {
   return count >= 2 && bytes[0] == '\x1f' && bytes[1] == '\x8b';

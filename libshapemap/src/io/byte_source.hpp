@@ -13,8 +13,8 @@
 
 namespace shapemap {
 
-/// The content of a file from front to back through a window that grows only with bytes that really exist.
-/// Gzip is recognised from the first bytes, never from the name: MRPT's tools write gzip into plain `.rawlog` files.
+/// Reads the content of a file from front to back through a window that grows only with bytes that really exist. Gzip
+/// is recognised from the first bytes, never from the name: MRPT's tools write gzip into plain `.rawlog` files.
 class ByteSource {
  public:
   /// Throws InputError when the file is missing, a directory, unreadable or empty.
@@ -23,16 +23,16 @@ class ByteSource {
   ByteSource(const ByteSource&) = delete;
   ByteSource& operator=(const ByteSource&) = delete;
 
-  /// Buffers at least `count` bytes, unless the content ends before; returns how many are buffered.
+  /// Buffers at least `count` bytes, unless the content ends before, and returns how many are buffered.
   std::size_t ensure(std::size_t count);
-  /// Valid until the next call that is not const.
+  /// The view is valid until the next call that is not const.
   std::string_view buffered() const { return {window_.data() + begin_, window_.size() - begin_}; }
   void consume(std::size_t count) { begin_ += count; }
 
-  /// Offset of the first buffered byte in the (decompressed) content.
+  /// Returns the offset of the first buffered byte in the (decompressed) content.
   std::uint64_t offset() const { return consumed_before_window_ + begin_; }
   const std::string& path() const { return path_; }
-  /// Why a gzip stream ended before its time, and where; empty when it did not, or when that is not known yet.
+  /// Tells why a gzip stream ended early, and where; empty when it did not, or when that is not known yet.
   const std::string& cut() const { return cut_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CARMEN logs. Of pose and odometry fields, which may hold anything, only the heading is looked at.
+// This reader of CARMEN logs skips pose and odometry fields, which may hold anything, but for the heading.
 #include <array>
 #include <cmath>
 #include <optional>
@@ -18,7 +18,7 @@
 namespace shapemap {
 namespace {
 
-/// The words between readings and timestamp, and the first of three that say what the robot took for its own motion.
+/// Counts the words between readings and timestamp; `odometry_at` is the first of the three of the odometry pose.
 struct PoseWords {
   std::size_t count = 0;
   std::size_t odometry_at = 0;
@@ -26,7 +26,7 @@ struct PoseWords {
 constexpr PoseWords kFlaserPoses{6, 3};       // x y theta odom_x odom_y odom_theta
 constexpr PoseWords kRobotLaserPoses{11, 3};  // laser pose, robot pose, tv rv forward_safety side_safety turn_axis
 
-/// Readings are only taken when the line has them, so that a wrong count cannot ask for memory.
+/// Reserves memory only for readings that the line has, so that a wrong count cannot ask for it.
 std::vector<float> read_ranges(Words& words, const LineReader& lines) {
   const std::string_view word = words.next();
   const std::optional<long long> count = parse_count(word);
@@ -57,7 +57,7 @@ double read_finite(Words& words, const LineReader& lines, const char* what) {
   return *value;
 }
 
-/// What follows the readings of a line.
+/// These fields follow the readings of a line.
 struct PosesAndTime {
   std::optional<double> heading_rad;
   double timestamp_s = 0.0;
@@ -76,7 +76,8 @@ class CarmenReader {
     finish_log(source_, log_);
     for (Scan& scan : log_.scans) {
       for (Sweep& sweep : scan.sweeps) {
-        if (sweep.sensor_label == "FLASER") sweep.max_range_m = param_max_range_m_;  // may come after the first scans
+        // the PARAM line may come after the first scans
+        if (sweep.sensor_label == "FLASER") sweep.max_range_m = param_max_range_m_;
       }
     }
     return std::move(log_);
@@ -99,7 +100,7 @@ class CarmenReader {
     if (value && *value > 0.0 && *value < kLongestRange_m) param_max_range_m_ = *value;
   }
 
-  /// What CARMEN has no field for; written by write_carmen().
+  /// Reads the remarks of write_carmen() on what CARMEN has no field for.
   void read_remark(Words words) {
     if (words.next() != "shapemap") return;
     const std::string_view what = words.next();
@@ -194,7 +195,7 @@ class CarmenReader {
     }
   }
 
-  /// The words may hold anything. Odometry of zeros is how logs say that there is none.
+  /// Reads the pose words, which may hold anything. Logs without odometry have zeros there.
   PosesAndTime read_poses(Words& words, const PoseWords& poses) {
     PosesAndTime read;
     std::array<std::optional<double>, 3> odometry;
@@ -236,8 +237,8 @@ class CarmenReader {
   Log log_;
   double param_max_range_m_ = 0.0;
   bool warned_of_angles_ = false;
-  MountPose mount_;              ///< of the next scan
-  bool joins_previous_ = false;  ///< the next scan is of the same position
+  MountPose mount_;              ///< the mount of the next sweep
+  bool joins_previous_ = false;  ///< the next sweep is of the same scan
 };
 
 }  // namespace

@@ -8,7 +8,8 @@
 
 namespace shapemap {
 
-/// FLASER lines name no angles: by convention they start to the right and turn by a step that the count tells.
+/// FLASER lines name no angles: by convention they start to the right and turn by a step that the number of beams
+/// tells.
 inline constexpr double kFlaserFirstAngle_rad = -90 * kDegree;
 std::optional<double> flaser_step_rad(std::size_t num_beams);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// FLASER where its convention says all there is to say of a log's scans, else ROBOTLASER1. CARMEN lines hold one scan
-// and no mount; both are kept in remarks that other programs skip and read_carmen() understands:
-//   # shapemap same-position                      the next scan is a sub-scan of the previous scan's position
-//   # shapemap mount X Y Z YAW PITCH ROLL         of the next scan's laser, metres and radians, turn included
-// The laser pose fields of ROBOTLASER1 say the planar part of the mount to other programs.
+// The writer uses FLASER lines where their convention covers the whole log, else ROBOTLASER1 lines. CARMEN lines hold
+// one sweep and no mount; both are kept in remarks that other programs skip and read_carmen() understands:
+//   # shapemap same-position                      the next sweep belongs to the scan of the previous one
+//   # shapemap mount X Y Z YAW PITCH ROLL         of the next sweep's laser, metres and radians, turn included
+// The laser pose fields of ROBOTLASER1 tell other programs the planar part of the mount.
 #include <cmath>
 
 #include "carmen.hpp"
@@ -25,8 +25,8 @@ bool fits_flaser(const Sweep& sweep) {
          std::abs(sweep.first_angle_rad - kFlaserFirstAngle_rad) < 1e-9 && mount_with_heading(sweep) == MountPose{};
 }
 
-/// The maximum range of all scans, or 0, when FLASER lines can hold the log; nothing when they cannot. One kind of line
-/// for the whole log, since readers take two kinds for two lasers.
+/// Returns the maximum range of all scans, or 0, when FLASER lines can hold the log, and nothing when they cannot. The
+/// whole log has one kind of line, since readers take two kinds for two lasers.
 std::optional<double> flaser_max_range_m(const Log& log) {
   std::optional<double> max_range_m;
   for (const Scan& scan : log.scans) {
@@ -61,7 +61,8 @@ class CarmenText {
   std::string text_;
 };
 
-/// Every reading that is a hit by the scan's own limits, 0 for the others: CARMEN knows no minimum and no flags.
+/// Writes every reading that is a return by the limits of the sweep, and the maximum or 0 for the others, since CARMEN
+/// knows no minimum range and no flags.
 void write_ranges(const Sweep& sweep, CarmenText& line) {
   const RangeLimits limits = range_limits(sweep, ReturnOptions{});
   line << sweep.ranges_m.size();

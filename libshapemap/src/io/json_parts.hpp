@@ -9,26 +9,26 @@
 #include "shapemap/mapper/map_result.hpp"
 #include "shapemap/matching/scan_match.hpp"
 
-/// What several of our JSON files hold. What is not a number is null.
+/// Several JSON files have these parts in common. Numbers that are not finite become null.
 namespace shapemap {
 
 using Json = nlohmann::ordered_json;
 
 Json number_json(double value);
 
-/// [x_m, y_m, theta_rad].
+/// The array is [x_m, y_m, theta_rad].
 Json pose_array(const Pose2& pose);
 Json pose_arrays(const std::vector<Pose2>& poses);
 
-/// Rows of x [m], y [m], theta [rad].
+/// The rows are those of (x [m], y [m], theta [rad]).
 Json covariance_json(const Eigen::Matrix3d& covariance);
 
 Json ranked_json(const RankedPose& ranked);
 
-/// In the unit of the option's name and without the last bits, which converting there and back leaves behind.
+/// Returns a value in the unit of the option's name, without the last bits, which converting there and back changes.
 double shown(double stored, double unit);
 
-/// Each option of `options` by its name.
+/// Adds each option of `options` by its name.
 template <class Options>
 void add_options(const Options& options, Json& all) {
   Options::fields(options, [&](const Field& field, const auto& value) {

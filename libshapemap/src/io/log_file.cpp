@@ -67,8 +67,8 @@ Log read_as(ByteSource& source, LogFormat format, const LogReadOptions& options)
   throw InputError(source.path() + ": unknown log format");
 }
 
-/// Readings of a log that does not say their unit become metres.
-void settle_range_unit(const std::string& path, RangeUnit unit, Log& log) {
+/// Converts readings to metres if the log does not state their unit.
+void convert_range_unit(const std::string& path, RangeUnit unit, Log& log) {
   if (log.states_range_unit) return;
   const bool is_recognised = unit == RangeUnit::kAuto;
   if (is_recognised) unit = recognised_range_unit(log);
@@ -94,7 +94,7 @@ Log read_log(const std::string& path, LogFormat format, const LogReadOptions& op
   const NoReturnChoice no_returns = no_return_choice(options.no_return_m);
   ByteSource source(path);
   Log log = read_as(source, format, options);
-  settle_range_unit(path, options.range_unit, log);
+  convert_range_unit(path, options.range_unit, log);
   const std::size_t num_of_reader = log.warnings.size();
   sort_out_no_returns(log, no_returns);
   for (std::size_t i = num_of_reader; i < log.warnings.size(); ++i) log.warnings[i] = path + ": " + log.warnings[i];

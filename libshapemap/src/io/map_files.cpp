@@ -10,7 +10,7 @@
 namespace shapemap {
 namespace {
 
-/// The shortest decimal that reads back as the same number.
+/// Returns the shortest decimal that reads back as the same number.
 std::string exact(double value) {
   char text[32];
   for (int digits = 6; digits <= 17; ++digits) {
@@ -20,7 +20,7 @@ std::string exact(double value) {
   return text;
 }
 
-/// As a double-quoted YAML scalar, so that any file name is one.
+/// Returns a double-quoted YAML scalar, which any file name can be.
 std::string yaml_string(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {
@@ -44,7 +44,7 @@ std::string ros_map_yaml(const OccupancyGrid& map, const std::string& image_name
        << "resolution: " << exact(map.resolution_m) << "\n"
        << "origin: [" << exact(map.origin_m.x()) << ", " << exact(map.origin_m.y())
        << ", 0]\n"
-       // Occupancy is (255 - grey) / 255: what was never seen is 0.5 and stays between the two limits.
+       // Occupancy is (255 - grey) / 255, so that unknown cells have 0.5 and stay between the two limits.
        << "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\nmode: trinary\n";
   return yaml.str();
 }

@@ -21,7 +21,7 @@ std::string extension_of(const std::string& path) {
   return extension;
 }
 
-constexpr double kUnknownGrey = 127.0;  // as cells that nobody saw
+constexpr double kUnknownGrey = 127.0;  // the grey of unknown cells
 
 struct Palette {
   cv::Scalar path;
@@ -29,13 +29,13 @@ struct Palette {
   cv::Scalar scale_bar;
 };
 
-/// Blue, green and red channels; in a grey picture, greys that neither walls nor free space have.
+/// Colours are blue, green and red; a grey picture gets greys that neither walls nor free space have.
 Palette palette_for(bool colour) {
   if (colour) return {{30, 30, 220}, {60, 160, 30}, {160, 60, 20}};
   return {cv::Scalar(90), cv::Scalar(60), cv::Scalar(60)};
 }
 
-/// 1, 2 or 5 times a power of ten, at most a quarter of the width.
+/// Returns 1, 2 or 5 times a power of ten, at most a quarter of the width.
 double scale_bar_length_m(double map_width_m) {
   const double longest_m = map_width_m / 4.0;
   const double decade = std::pow(10.0, std::floor(std::log10(longest_m)));
@@ -55,7 +55,8 @@ std::string length_text(double length_m) {
   return text;
 }
 
-/// A strip above the picture with a scale bar, where it hides nothing. Not below: the lower left corner is the origin.
+/// Puts a strip with a scale bar above the picture, where it hides nothing. Below it would move the origin, which is
+/// the lower left corner.
 cv::Mat with_scale_bar(const cv::Mat& image, const OccupancyGrid& map, const cv::Scalar& ink) {
   const double length_m = scale_bar_length_m(map.width_cells * map.resolution_m);
   const int length = std::max(1, static_cast<int>(std::lround(length_m / map.resolution_m)));

@@ -18,7 +18,7 @@
 namespace shapemap {
 namespace {
 
-/// A power cut costs the work of about so long; syncing each alignment would take longer than making it.
+/// A power cut costs the work of about so long; syncing each match would take longer than making it.
 constexpr std::chrono::seconds kSyncEvery{1};
 
 constexpr std::uint64_t kMostScans = std::uint64_t{1} << 31U;
@@ -27,12 +27,12 @@ constexpr std::uint64_t kMostScans = std::uint64_t{1} << 31U;
   throw OutputError("cannot write '" + path + "': " + what);
 }
 
-/// One number for a key; positions are fewer than kMostScans.
+/// Packs a key into one number, since scans are fewer than kMostScans.
 std::uint64_t packed(const MatchKey& key) {
   return std::uint64_t{key.reference} << 33U | std::uint64_t{key.query} << 2U | static_cast<std::uint64_t>(key.search);
 }
 
-/// Up to `count` bytes, fewer at the end of the file.
+/// Reads up to `count` bytes, fewer at the end of the file.
 std::string read_at(int descriptor, std::uint64_t offset, std::size_t count, const std::string& path) {
   std::string bytes(count, '\0');
   std::size_t done = 0;
@@ -47,7 +47,7 @@ std::string read_at(int descriptor, std::uint64_t offset, std::size_t count, con
   return bytes;
 }
 
-/// The whole record that begins at `offset`, if there is one.
+/// Reads the whole record that begins at `offset`, if there is one.
 std::optional<MatchRecord> read_record(int descriptor, std::uint64_t offset, const std::string& path) {
   const std::string head_bytes = read_at(descriptor, offset, kRecordHeadBytes, path);
   if (head_bytes.size() < kRecordHeadBytes) return std::nullopt;
@@ -60,11 +60,11 @@ std::uint64_t record_size(const MatchRecord& record) { return record_bytes(recor
 
 bool is_synced(int descriptor) { return ::fdatasync(descriptor) == 0 || errno == EINVAL || errno == EROFS; }
 
-/// So that the name of a new file survives a power cut, too.
+/// Syncs the folder, so that the name of a new file survives a power cut, too.
 void sync_folder_of(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return;  // a folder may be written to and not read
+  if (descriptor < 0) return;  // a folder may be writable and not readable
   ::fsync(descriptor);
   ::close(descriptor);
 }
@@ -163,7 +163,8 @@ std::optional<std::vector<MatchCandidate>> MatchCacheFile::find(const MatchKey& 
     offset = found->second;
   }
   std::optional<MatchRecord> record = read_record(descriptor_, offset, path_);
-  if (!record || packed(record->key) != packed(key)) return std::nullopt;  // changed meanwhile: it is made again
+  // the file was changed meanwhile, so that the match is made again
+  if (!record || packed(record->key) != packed(key)) return std::nullopt;
   return std::move(record->candidates);
 }
 
@@ -182,7 +183,7 @@ void MatchCacheFile::keep(const MatchKey& key, const std::vector<MatchCandidate>
   if (!is_synced(descriptor_)) fail(path_, std::strerror(errno));
 }
 
-/// What cannot be written whole is taken back.
+/// A write that fails is taken back whole.
 void MatchCacheFile::append(const std::string& bytes) {
   std::size_t done = 0;
   while (done < bytes.size()) {

@@ -15,12 +15,13 @@
 namespace shapemap {
 namespace {
 
-constexpr std::string_view kMagic = "shm-state\n\x1a\n";  // as in PNG, ends what prints the file, and tells line ends
+// as in PNG, this ends programs that print the file, and reveals changed line ends
+constexpr std::string_view kMagic = "shm-state\n\x1a\n";
 constexpr std::uint32_t kFormat = 1;
 constexpr std::size_t kTextAt = kMagic.size() + 8;
 constexpr std::size_t kMostNamed = 4;
 
-/// FNV-1a, 64 bits, over numbers to the last bit.
+/// The fingerprint is FNV-1a with 64 bits (Fowler, Noll, Vo) over numbers to the last bit.
 class Fingerprint {
  public:
   template <class Number>
@@ -40,7 +41,7 @@ class Fingerprint {
   std::uint64_t value_ = 0xCBF29CE484222325U;
 };
 
-/// All of a log that alignments depend on.
+/// Covers all of a log that matches depend on.
 std::string fingerprint(const Log& log) {
   Fingerprint print;
   for (const Scan& scan : log.scans) {
@@ -60,7 +61,7 @@ std::string fingerprint(const Log& log) {
   return print.text();
 }
 
-/// In the unit of the option's name, and such that different values have different texts.
+/// Writes a value in the unit of the option's name, and such that different values have different texts.
 std::string option_text(const Field& field, double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.14g", value / field.unit);
@@ -112,7 +113,7 @@ std::string text_difference(Lines found, Lines expected) {
     if (name == "readings" || found[name] == value) continue;
     if (++count <= kMostNamed) named += (count > 1 ? ", --" : "--") + name + " " + found[name] + " instead of " + value;
   }
-  // Options may change what is read, so that these are named first.
+  // Options may change what is read, so that they are named first.
   const bool same_readings = found["readings"] == expected["readings"];
   if (count == 0) return same_readings ? "" : "is of another log, or of other positions of it, just as many";
   return "was made with " + named + (count > kMostNamed ? " and more" : "");

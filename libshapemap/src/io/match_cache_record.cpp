@@ -17,7 +17,7 @@ constexpr std::size_t kCandidateBytes = 26 * kWordBytes;
 constexpr std::size_t kMostCandidates = 1000;  // far more than the options allow
 constexpr std::size_t kMostBytes = kKeyBytes + kMostCandidates * kCandidateBytes;
 
-// What an alignment can say: far more than any search gives, so that only damage is kept out.
+// These bounds of a match are far above anything that a search gives, so that only damage is kept out.
 constexpr double kMostDistance_m = 1e4;
 constexpr double kMostScore = 1e6;
 constexpr double kMostWeight = 1e9;
@@ -35,7 +35,7 @@ std::uint64_t word_at(std::string_view bytes, std::size_t offset) {
   return value;
 }
 
-/// Calls `visit` for each number of a hypothesis, in the order of the file.
+/// Calls `visit` for each number of a candidate, in the order of the file.
 template <class Candidate, class Visit>
 void visit_numbers(Candidate& h, Visit&& visit) {
   for (auto* pose : {&h.ref_from_query, &h.fit.ref_from_query}) {
@@ -53,7 +53,7 @@ void visit_numbers(Candidate& h, Visit&& visit) {
   visit(h.fit.lever_m);
 }
 
-void append_hypothesis(std::string& bytes, const MatchCandidate& candidate) {
+void append_candidate(std::string& bytes, const MatchCandidate& candidate) {
   visit_numbers(candidate, [&](double number) {
     std::uint64_t word = 0;
     std::memcpy(&word, &number, sizeof word);
@@ -67,18 +67,18 @@ bool is_plausible(const Pose2& pose) {
          std::abs(pose.theta_rad) <= 2.0 * 2.0 * kPi;
 }
 
-/// A partner tells at most 1 of a place, and of the heading as much as its distance, squared.
+/// A partner has an information of at most 1 about the place, and of its squared distance about the heading.
 bool is_plausible(const LineFit& fit) {
   const bool are_lengths =
       fit.rms_m >= 0.0 && fit.rms_m <= kMostDistance_m && fit.lever_m >= 0.0 && fit.lever_m <= kMostDistance_m;
-  constexpr int kFew = 3;  // have no lever
+  constexpr int kFew = 3;  // so few partners have no lever
   const double lever_m = fit.partners < kFew ? kMostDistance_m : std::max(fit.lever_m, 0.1);
   const Eigen::Vector3d reach(1.0, 1.0, lever_m);
   const Eigen::Matrix3d most = 1.001 * (fit.partners + 1.0) * reach * reach.transpose();
   return are_lengths && (fit.information.array().abs() <= most.array()).all();
 }
 
-/// A checksum tells damage from what was written, not who wrote it. False for NaN.
+/// Rejects impossible candidates, since a checksum detects damage, not who wrote the record. NaN is rejected too.
 bool is_plausible(const MatchCandidate& h) {
   const Visibility& v = h.visibility;
   for (const double weight : {v.agree, v.crossed, v.hidden, v.unclear, v.outside, v.cross_agree, v.cross_total}) {
@@ -127,7 +127,7 @@ std::string record_bytes(const MatchKey& key, const std::vector<MatchCandidate>&
   append_word(body, key.reference);
   append_word(body, key.query);
   append_word(body, static_cast<std::uint64_t>(key.search));
-  for (const MatchCandidate& candidate : candidates) append_hypothesis(body, candidate);
+  for (const MatchCandidate& candidate : candidates) append_candidate(body, candidate);
   std::string bytes;
   bytes.reserve(kRecordHeadBytes + body.size());
   append_u32(bytes, static_cast<std::uint32_t>(body.size()));

@@ -10,14 +10,14 @@
 
 #include "shapemap/matching/match_cache.hpp"
 
-/// The bytes of an alignment in a state file: its size, its checksum, and words of eight bytes; all little endian.
+/// A match in a state file is its size, its checksum, and words of eight bytes; all are little endian.
 namespace shapemap {
 
 inline constexpr std::size_t kRecordHeadBytes = 8;
 
 struct RecordHead {
-  std::uint32_t num_bytes = 0;  ///< of the body that follows
-  std::uint32_t checksum = 0;   ///< of these
+  std::uint32_t num_bytes = 0;  ///< size of the body that follows
+  std::uint32_t checksum = 0;   ///< checksum of the body
 };
 
 struct MatchRecord {
@@ -29,13 +29,13 @@ void append_u32(std::string& bytes, std::uint32_t value);
 std::uint32_t u32_at(std::string_view bytes, std::size_t offset);
 std::uint32_t checksum_of(std::string_view bytes);
 
-/// Head and body.
+/// Returns head and body of a record.
 std::string record_bytes(const MatchKey& key, const std::vector<MatchCandidate>& candidates);
 
-/// Nothing for a size that no body has; `bytes` are kRecordHeadBytes.
+/// Returns nothing for a size that no body has; `bytes` are kRecordHeadBytes long.
 std::optional<RecordHead> record_head(std::string_view bytes);
 
-/// Nothing for a body that is damaged.
+/// Returns nothing for a damaged body.
 std::optional<MatchRecord> match_record(const RecordHead& head, std::string_view body);
 
 }  // namespace shapemap

@@ -5,7 +5,7 @@
 
 namespace shapemap {
 
-/// The mount seen from the position's first heading: the sub-scan's nominal turn becomes part of it.
+/// Returns the mount at the scan's first heading: the sweep's nominal turn becomes part of it.
 MountPose mount_with_heading(const Sweep& sweep);
 
 inline bool operator==(const MountPose& a, const MountPose& b) {
@@ -13,7 +13,7 @@ inline bool operator==(const MountPose& a, const MountPose& b) {
          a.roll_rad == b.roll_rad;
 }
 
-/// The same readings from right to left, as formats without a scan direction want them.
+/// Returns the same readings from right to left, for formats without a scan direction.
 Sweep counterclockwise(Sweep sweep);
 
 }  // namespace shapemap

@@ -14,13 +14,12 @@ constexpr std::array<std::string_view, 4> kLists{"angles", "times", "ranges", "i
 
 bool is_list(std::string_view word) { return std::find(kLists.begin(), kLists.end(), word) != kLists.end(); }
 
-/// Reads the fields of one line.
 class FieldReader {
  public:
   FieldReader(Words& words, const LineReader& lines, const NistUnits& units)
       : words_(words), lines_(lines), units_(units) {}
 
-  /// A field that may stand with a sensor or a scan; false when it is none.
+  /// Reads a field that a sensor or a scan may have; returns false when `field` is none.
   bool read_shared(std::string_view field, NistHeader& header) {
     Sweep& sweep = header.sweep;
     if (field == "first_angle") {
@@ -57,7 +56,7 @@ class FieldReader {
     return value;
   }
 
-  /// The numbers up to the next list, or the end of the line.
+  /// Reads the numbers up to the next list, or the end of the line.
   std::vector<double> list(const std::string& what, double unit) {
     std::vector<double> values;
     std::string_view word = words_.next();
@@ -93,7 +92,7 @@ class FieldReader {
     return ranges_m;
   }
 
-  /// The keyword that ended the list before; empty at the end of the line.
+  /// Returns the keyword that ended the last list; empty at the end of the line.
   std::string_view after_list() const { return after_list_; }
 
  private:
@@ -103,7 +102,7 @@ class FieldReader {
 
   static double positive_or_unknown(double value) { return std::isfinite(value) && value > 0.0 ? value : 0.0; }
 
-  /// Also `nan` and `inf`, which headers hold where a driver does not know.
+  /// Accepts also `nan` and `inf`, which headers hold where a driver does not know.
   double any_number(const char* what) {
     last_ = words_.next();
     if (last_.empty()) throw lines_.error("too few values: " + std::string(what) + " is missing");
@@ -129,7 +128,7 @@ std::optional<std::size_t> read_num_beams(Words& words, const LineReader& lines)
   return static_cast<std::size_t>(*count);
 }
 
-/// The lists of a `scan` line.
+/// A `scan` line may have these lists.
 struct Lists {
   bool has_angles = false;
   bool has_times = false;
@@ -209,8 +208,8 @@ NistHeader read_nist_sensor(Words& words, const LineReader& lines, const NistUni
   return sensor;
 }
 
-Sweep read_nist_scan(Words& words, const LineReader& lines, const NistUnits& units, const NistHeader& sensor,
-                     NistOddities& oddities) {
+Sweep read_nist_sweep(Words& words, const LineReader& lines, const NistUnits& units, const NistHeader& sensor,
+                      NistOddities& oddities) {
   NistHeader header = sensor;
   header.has_own_angles = false;
   Sweep& sweep = header.sweep;

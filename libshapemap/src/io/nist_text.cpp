@@ -42,8 +42,8 @@ class NistReader {
     if (!has_header_) return read_header(keyword, words);
     if (keyword == "units") return read_units(words);
     if (keyword == "sensor") return read_sensor(words);
-    if (keyword == "position") return read_position(words);
-    if (keyword == "scan") return read_scan(words);
+    if (keyword == "position") return read_scan(words);
+    if (keyword == "scan") return read_sweep(words);
     throw lines_.error("'" + std::string(keyword) + "' is no statement; expected units, sensor, position or scan");
   }
 
@@ -100,7 +100,7 @@ class NistReader {
     }
   }
 
-  void read_position(Words& words) {
+  void read_scan(Words& words) {
     Scan scan;
     scan.timestamp_s = number(words, "the timestamp");
     lines_.refuse(implausible_time(scan.timestamp_s));
@@ -120,12 +120,12 @@ class NistReader {
     log_.scans.push_back(std::move(scan));
   }
 
-  void read_scan(Words& words) {
+  void read_sweep(Words& words) {
     const std::string name(words.next());
     const auto sensor = sensors_.find(name);
     if (sensor == sensors_.end()) throw lines_.error("sensor '" + name + "' is not declared above");
     if (log_.scans.empty()) throw lines_.error("a scan before the first position");
-    Sweep sweep = read_nist_scan(words, lines_, units_, sensor->second, oddities_);
+    Sweep sweep = read_nist_sweep(words, lines_, units_, sensor->second, oddities_);
     lines_.require_plausible(sweep);
     if (choice_.takes(name, false)) log_.scans.back().sweeps.push_back(std::move(sweep));
   }
@@ -139,7 +139,7 @@ class NistReader {
     warn(oddities_.num_without, "have angles that cannot be, and are left without readings");
   }
 
-  /// A position that was announced but has no scan, be it that its laser was not asked for or that the file ends.
+  /// Drops scans that were announced but have no sweep, because their laser was not asked for or the file ends.
   void drop_empty_scans() {
     std::vector<Scan> kept;
     for (Scan& scan : log_.scans) {
@@ -159,8 +159,8 @@ class NistReader {
 };
 
 bool begins_with_number(ByteSource& source) {
-  constexpr std::size_t kLookAhead = 1U << 16U;
-  source.ensure(kLookAhead);
+  constexpr std::size_t kPeekedBytes = 1U << 16U;
+  source.ensure(kPeekedBytes);
   std::string_view content = source.buffered();
   while (!content.empty()) {
     const std::string_view line = content.substr(0, content.find('\n'));

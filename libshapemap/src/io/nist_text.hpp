@@ -6,13 +6,14 @@
 #include "log_formats.hpp"
 #include "text.hpp"
 
-/// The two text forms of multi-scan logs: "shapemap-scans", which says everything, and bare lines of numbers.
+/// Logs with several sweeps per scan have two text forms: "shapemap-scans", which states everything, and bare lines of
+/// numbers.
 namespace shapemap {
 
 inline constexpr std::string_view kNistName = "shapemap-scans";
-inline constexpr long long kNistVersion = 2;  ///< version 1 is the same without what it cannot say
+inline constexpr long long kNistVersion = 2;  ///< version 1 lacks some fields
 
-/// Reads a bare log, one sub-scan a line, whose geometry is all in `options`.
+/// Reads a bare log, one sweep a line, whose geometry is all in `options`.
 Log read_bare(ByteSource& source, const LogReadOptions& options);
 
 }  // namespace shapemap

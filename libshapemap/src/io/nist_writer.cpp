@@ -26,18 +26,18 @@ void append(std::string& text, const char* field, double value) {
   append(text, value);
 }
 
-/// One `sensor` statement: what most of its scans have in common. A scan says itself what is different.
+/// A `sensor` statement holds what most of its sweeps have in common. A `scan` statement holds what differs.
 struct Sensor {
   std::string name;
-  Sweep usual;  ///< the first scan, without readings
+  Sweep usual;  ///< the first sweep, without readings
   std::size_t num_beams = 0;
   bool has_any_number = false;
 };
 
-/// What angles are divided by. Degrees are for people; they do not always read back as the same radians.
+/// Angles are divided by this. Degrees are for people; they do not always read back as the same radians.
 double angle_unit_rad(int version) { return version == 1 ? kDegree : 1.0; }
 
-/// The fields of a sensor that a scan does not share with `usual`; of the sensor itself, all that say something.
+/// Returns the fields that `sweep` does not share with `usual`; of the sensor itself, all that state something.
 std::string header_text(const Sweep& sweep, const Sweep& usual, double unit_rad) {
   std::string text;
   if (sweep.is_evenly_spaced() && sweep.first_angle_rad != usual.first_angle_rad) {
@@ -52,7 +52,7 @@ std::string header_text(const Sweep& sweep, const Sweep& usual, double unit_rad)
   return text;
 }
 
-/// The lasers of a log as the format wants them: one name each, without blanks and remarks.
+/// The lasers of a log as the format wants them: each has one name, without blanks and remarks.
 class Sensors {
  public:
   explicit Sensors(const Log& log) {
@@ -91,7 +91,7 @@ class Sensors {
   }
 
  private:
-  /// What the scans of one sensor share: label and mount.
+  /// The sweeps of one sensor share label and mount.
   using Key = std::tuple<std::string, double, double, double, double, double, double>;
   static Key key_of(const Sweep& sweep) {
     const MountPose& mount = sweep.robot_from_sensor;
@@ -133,7 +133,7 @@ class Sensors {
   std::set<std::string> names_;
 };
 
-/// Whether `scan` has something that version 1 of the format cannot say.
+/// Says whether `sweep` has something that version 1 of the format cannot state.
 bool needs_version_2(const Sweep& sweep, const Sensor& sensor) {
   return !sweep.is_evenly_spaced() || sweep.start_s != 0.0 || sweep.beam_time_step_s > 0.0 ||
          !sweep.beam_times_s.empty() || !sweep.intensities.empty() || !header_text(sweep, sensor.usual, 1.0).empty();
@@ -160,7 +160,7 @@ void append_list(std::string& text, const char* name, const std::vector<Number>&
   }
 }
 
-void append_scan(std::string& text, const Sweep& sweep, const Sensor& sensor, double unit_rad) {
+void append_sweep(std::string& text, const Sweep& sweep, const Sensor& sensor, double unit_rad) {
   text += "scan " + sensor.name;
   append(text, "heading", sweep.nominal_heading_rad / unit_rad);
   if (sweep.start_s != 0.0) append(text, "time", sweep.start_s);
@@ -197,7 +197,7 @@ void write_nist(const Log& log, ByteSink& sink) {
       append(text, scan.reference_pose->theta_rad / unit_rad);
     }
     text += '\n';
-    for (const Sweep& sweep : scan.sweeps) append_scan(text, sweep, sensors.of(sweep), unit_rad);
+    for (const Sweep& sweep : scan.sweeps) append_sweep(text, sweep, sensors.of(sweep), unit_rad);
     sink.write(text);
   }
 }

@@ -19,7 +19,7 @@ class RawlogReader {
   RawlogReader(ByteSource& source, const LogReadOptions& options)
       : source_(source), skeleton_(source), choice_(options.sensor_label) {
     log_.format = "rawlog";
-    log_.states_range_unit = true;  // MRPT has nothing but metres
+    log_.states_range_unit = true;  // MRPT has only metres
   }
 
   Log read() {
@@ -57,7 +57,7 @@ class RawlogReader {
       read_frame();
     } else if (header.name == kScanClass) {
       Scan scan;
-      // Observations stand alone here: with several lasers, each would make its own positions.
+      // Observations stand alone here: with several lasers, each would make its own scans.
       read_scan(scan, true);
       add(std::move(scan));
     } else {
@@ -143,7 +143,7 @@ class RawlogReader {
   Log log_;
   std::size_t num_entries_ = 0;
   std::size_t num_unusable_ = 0;
-  std::string first_unusable_;  ///< what is wrong with the first of them, and where it is
+  std::string first_unusable_;  ///< the fault of the first of them, and its offset
   std::size_t num_without_time_ = 0;
 };
 
@@ -161,7 +161,7 @@ void require_rawlog_time(const Scan& scan, std::size_t index) {
 
 Log read_rawlog(ByteSource& source, const LogReadOptions& options) { return RawlogReader(source, options).read(); }
 
-/// An action, with odometry if there are poses, and a frame per position: MRPT's readers take nothing but such pairs.
+/// Writes an action, with odometry if there are poses, and a frame per scan, since MRPT's readers take only such pairs.
 void write_rawlog(const Log& log, const LogPoses* poses, ByteSink& sink) {
   for (std::size_t i = 0; i < log.scans.size(); ++i) require_rawlog_time(log.scans[i], i);
   Pose2 map_from_previous;

@@ -40,7 +40,7 @@ MountPose mount_from_mrpt(const mrpt::poses::CPose3D& pose) {
 /// MRPT counts in ticks since the year 1601; tick 0 means "unknown".
 mrpt::Clock::time_point mrpt_time(double timestamp_s) { return mrpt::Clock::fromDouble(timestamp_s); }
 
-/// MRPT's beams lie symmetrically around the sensor's x axis: the middle of ours is turned there.
+/// MRPT's beams lie symmetrically around the sensor's x axis, so that the middle of the sweep is turned there.
 CObservation2DRangeScan::Ptr scan_to_mrpt(const Sweep& even_or_not, double timestamp_s) {
   const Sweep sweep = on_even_beams(even_or_not);
   const std::size_t num_beams = sweep.ranges_m.size();

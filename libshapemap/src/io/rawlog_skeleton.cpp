@@ -12,7 +12,7 @@ namespace shapemap {
 namespace {
 
 constexpr unsigned char kNameFlag = 0x80;  // set in the length of a class name
-constexpr unsigned char kEndMark = 0x88;   // behind each object
+constexpr unsigned char kEndMark = 0x88;   // follows each object
 constexpr std::size_t kLongestName = 120;
 constexpr std::size_t kLongestHeader = kLongestName + 2;
 constexpr auto kMostBeams = static_cast<std::uint32_t>(plausible::kMostBeams);
@@ -30,26 +30,26 @@ class Cursor {
  public:
   explicit Cursor(ByteSource& source) : source_(source) {}
 
-  std::size_t scan() const { return scan_; }
+  std::size_t offset() const { return offset_; }
   void advance(std::size_t count) {
-    if (source_.ensure(scan_ + count) < scan_ + count) fail("the file ends inside of a scan");
-    scan_ += count;
+    if (source_.ensure(offset_ + count) < offset_ + count) fail("the file ends inside of a scan");
+    offset_ += count;
   }
   template <class Integer>
   Integer take() {
     advance(sizeof(Integer));
     Integer value{};
-    std::memcpy(&value, source_.buffered().data() + scan_ - sizeof(Integer), sizeof(Integer));
+    std::memcpy(&value, source_.buffered().data() + offset_ - sizeof(Integer), sizeof(Integer));
     return value;
   }
   ObjectHeader header() {
-    source_.ensure(scan_ + kLongestHeader);
-    const std::optional<ObjectHeader> header = parse_object_header(source_.buffered().substr(scan_));
+    source_.ensure(offset_ + kLongestHeader);
+    const std::optional<ObjectHeader> header = parse_object_header(source_.buffered().substr(offset_));
     if (!header) fail("no object where one should be");
     advance(header->length);
     return *header;
   }
-  /// A byte that MRPT reads straight into a bool, where nothing but 0 and 1 may stand.
+  /// MRPT reads this byte straight into a bool, so that only 0 and 1 may stand there.
   bool take_bool() {
     const auto byte = take<std::uint8_t>();
     if (byte > 1) fail("a truth value of " + std::to_string(byte));
@@ -58,11 +58,11 @@ class Cursor {
   void end_mark() {
     if (take<unsigned char>() != kEndMark) fail("an object does not end where it should");
   }
-  [[noreturn]] void fail(const std::string& what) const { throw RawlogDamage{source_.offset() + scan_, what}; }
+  [[noreturn]] void fail(const std::string& what) const { throw RawlogDamage{source_.offset() + offset_, what}; }
 
  private:
   ByteSource& source_;
-  std::size_t scan_ = 0;
+  std::size_t offset_ = 0;
 };
 
 void pass_matrix(Cursor& cursor) {
@@ -158,24 +158,24 @@ std::uint32_t RawlogSkeleton::enter_frame() {
   if (header.version < 2) cursor.advance(sizeof(std::uint32_t));   // identifier
   if (header.version == 0) cursor.advance(sizeof(std::uint64_t));  // timestamp
   const auto num_observations = cursor.take<std::uint32_t>();
-  skip(cursor.scan());
+  skip(cursor.offset());
   return num_observations;
 }
 
 void RawlogSkeleton::leave_frame() {
   Cursor cursor(source_);
   cursor.end_mark();
-  skip(cursor.scan());
+  skip(cursor.offset());
 }
 
 std::string_view RawlogSkeleton::peek_scan() {
   Cursor cursor(source_);
   pass_scan(cursor);
-  return source_.buffered().substr(0, cursor.scan());
+  return source_.buffered().substr(0, cursor.offset());
 }
 
-/// Objects do not tell their length. The end is an end mark in front of the name of the next entry; inside of other
-/// objects that does not occur.
+/// Objects do not state their length. The end is an end mark in front of the name of the next entry, which does not
+/// occur inside of other objects.
 void RawlogSkeleton::skip_object() {
   skip(peek_header().length);
   unsigned char last = 0;

@@ -8,25 +8,25 @@
 
 #include "byte_source.hpp"
 
-/// The outline of a rawlog: where its entries, frames and laser scans begin and end.
+/// The skeleton of a rawlog tells where its entries, frames and laser scans begin and end.
 ///
-/// MRPT's deserialisers allocate whatever a count in the file says before they look whether the file has that much,
-/// so that one wrong bit can ask for gigabytes. They also must read odometry and images to get past them. Therefore
-/// this outline is followed without MRPT: laser scans are measured against the bytes that exist, and only such a
-/// checked slice is given to MRPT; everything else is stepped over unread, by looking for the next entry's name.
+/// MRPT's deserialisers allocate whatever a count in the file says before they check whether the file has that much, so
+/// that one wrong bit can ask for gigabytes. They also must read odometry and images to get past them. Therefore the
+/// skeleton is followed without MRPT: laser scans are measured against the bytes that exist, and only such a checked
+/// slice is given to MRPT; everything else is skipped unread, by searching for the next entry's name.
 namespace shapemap {
 
-/// The rawlog ends before it should or holds what cannot be.
+/// The rawlog ends too early or holds something impossible.
 struct RawlogDamage {
   std::uint64_t offset = 0;
   std::string what;
 };
 
-/// Class name and version in front of every object.
+/// Every object begins with its class name and version.
 struct ObjectHeader {
   std::string_view name;  ///< without namespaces, which MRPT 2 writes and MRPT 1 did not; valid until more is read
   std::uint8_t version = 0;
-  std::size_t length = 0;  ///< of the header itself
+  std::size_t length = 0;  ///< length of the header itself
 };
 
 inline constexpr std::string_view kScanClass = "CObservation2DRangeScan";
@@ -38,24 +38,24 @@ class RawlogSkeleton {
 
   bool at_end() { return source_.ensure(1) == 0; }
   std::uint64_t offset() const { return source_.offset(); }
-  /// The object at the current offset. Throws RawlogDamage when there is none.
+  /// Returns the header at the current offset. Throws RawlogDamage when there is none.
   ObjectHeader peek_header();
-  /// Steps into the frame at the current offset: how many observations follow.
+  /// Steps into the frame at the current offset and returns how many observations follow.
   std::uint32_t enter_frame();
   /// Steps over the end mark of a frame.
   void leave_frame();
-  /// The whole serialised scan at the current offset, whose counts have been checked; call skip() afterwards.
+  /// Returns the whole serialised scan at the current offset, whose counts have been checked; call skip() afterwards.
   std::string_view peek_scan();
   void skip(std::size_t count) { source_.consume(count); }
-  /// Steps over an object of any class to the next entry or observation, or to the end. The end mark of a frame, if
-  /// the object is the last one in it, is stepped over as well.
+  /// Steps over an object of any class to the next entry or observation, or to the end. The end mark of a frame, if the
+  /// object is the last one in it, is stepped over as well.
   void skip_object();
 
  private:
   ByteSource& source_;
 };
 
-/// The header at the front of `bytes`; nothing when there is none, or when it is not whole.
+/// Parses the header at the front of `bytes`; returns nothing when there is none, or when it is not whole.
 std::optional<ObjectHeader> parse_object_header(std::string_view bytes);
 
 }  // namespace shapemap

@@ -10,7 +10,7 @@
 namespace shapemap {
 namespace {
 
-constexpr std::size_t kLookAhead = 1U << 20U;
+constexpr std::size_t kPeekedBytes = 1U << 20U;
 constexpr std::array<std::string_view, 11> kCarmenWords{"FLASER",    "RLASER",  "ROBOTLASER1", "ROBOTLASER2",
                                                         "PARAM",     "SYNC",    "ODOM",        "TRUEPOS",
                                                         "RAWLASER1", "NMEAGGA", "MARKER"};
@@ -25,7 +25,7 @@ bool is_carmen_word(std::string_view word) {
   return false;
 }
 
-/// What a non-empty text line tells about the format of its file; kAuto: nothing.
+/// Returns what a text line tells about the format of its file; kAuto is nothing.
 LogFormat format_of_line(std::string_view line) {
   Words words(line, ',');
   const std::string_view first = words.next();
@@ -44,8 +44,8 @@ bool is_binary(char c) {
 }  // namespace
 
 LogFormat recognise_log_format(ByteSource& source) {
-  source.ensure(kLookAhead);
-  std::string_view content = source.buffered().substr(0, kLookAhead);
+  source.ensure(kPeekedBytes);
+  std::string_view content = source.buffered().substr(0, kPeekedBytes);
   if (looks_like_rawlog(content)) return LogFormat::kRawlog;
   if (content.empty()) throw InputError(source.path() + ": " + source.cut() + ", nothing can be read before that");
   if (content.substr(0, 3) == "\xEF\xBB\xBF") content.remove_prefix(3);
@@ -61,7 +61,7 @@ LogFormat recognise_log_format(ByteSource& source) {
       throw InputError(source.path() + ": unknown binary format (byte " + std::to_string(begin + i) + " is no text); " +
                        kExpected);
     }
-    // A NIST log says what it is in its first statement; CARMEN logs may begin with anything.
+    // A NIST log names its format in its first statement; CARMEN logs may begin with anything.
     const LogFormat format = format_of_line(line);
     const bool counts = format == LogFormat::kNist ? first_statement == 0 : format != LogFormat::kAuto;
     if (counts) return format;

@@ -8,7 +8,7 @@
 
 namespace shapemap {
 
-/// For each position: that which its alignment is to.
+/// Returns, for each scan, the index of the scan that it is matched with.
 std::vector<std::size_t> references_of(const MapResult& result);
 
 }  // namespace shapemap

@@ -153,7 +153,7 @@ Json scan_json(const ScanResult& scan, std::size_t reference, const RunReport& r
           {"agreement", nullptr}};
 }
 
-Json agreement_json(const ScanConsistency& consistency) {
+Json consistency_json(const ScanConsistency& consistency) {
   return {{"agree", consistency.agree},
           {"through", consistency.through},
           {"in_free", consistency.in_free},
@@ -170,7 +170,7 @@ Json scans_json(const RunReport& report) {
   }
   for (const Component& component : report.result.components) {
     for (const PlacedScan& place : component.scans) {
-      list.at(entry_of.at(place.scan_index))["agreement"] = agreement_json(place.consistency);
+      list.at(entry_of.at(place.scan_index))["agreement"] = consistency_json(place.consistency);
     }
   }
   for (const PlacedScan& place : report.result.placed()) {
@@ -179,7 +179,7 @@ Json scans_json(const RunReport& report) {
   return list;
 }
 
-/// How many of the positions each log has.
+/// Counts the scans of each session.
 Json per_log_json(const Log& log, const std::vector<PlacedScan>& scans) {
   Json list = Json::array();
   const std::vector<LogPart> parts = parts_of(log);
@@ -201,7 +201,7 @@ Json drawn_json(const RunReport& report, std::size_t component) {
 Json walls_json(const RunReport& report, std::size_t component) {
   if (component >= report.wall_directions.size()) return nullptr;
   const WallDirection& walls = report.wall_directions[component];
-  return {{"turned_deg", walls.turn_rad() / kDegree}, {"share", walls.share}, {"rival_share", walls.rival_share}};
+  return {{"turned_deg", walls.turn_rad() / kDegree}, {"share", walls.share}, {"rival_share", walls.second_share}};
 }
 
 Json components_json(const RunReport& report) {

@@ -111,7 +111,7 @@ std::optional<float> parse_range(std::string_view word, double metres_per_unit) 
   const std::optional<double> value = parse_number(word);
   if (!value) return std::nullopt;
   const double range_m = *value * metres_per_unit;
-  if (range_m < 0.0) return 0.0F;  // too near, or an error code: not that nothing was hit
+  if (range_m < 0.0) return 0.0F;  // such a range is too near, or an error code, but does not say that nothing was hit
   const bool is_distance = std::isfinite(range_m) && range_m <= std::numeric_limits<float>::max();
   return is_distance ? static_cast<float>(range_m) : kNoReturn;
 }

@@ -12,23 +12,24 @@
 #include "shapemap/core/errors.hpp"
 #include "shapemap/scan/scan.hpp"
 
-/// Lines, words and numbers; the same in every locale.
+/// Lines, words and numbers are the same in every locale.
 namespace shapemap {
 
-/// The lines of a text, with Unix or DOS line ends. What a cut gzip stream leaves of its last line is not given out.
+/// Reads the lines of a text with Unix or DOS line ends. The last line of a cut gzip stream is not returned.
 class LineReader {
  public:
   explicit LineReader(ByteSource& source) : source_(source) {}
-  /// The next line, valid until the next call; nothing at the end. Throws InputError on a line over 64 MiB.
+  /// Returns the next line, valid until the next call, or nothing at the end. Throws InputError on a line over 64 MiB.
   std::optional<std::string_view> next();
-  /// For a fault in the latest line: "path:line: what".
+  /// Returns an error in the latest line: "path:line: what".
   InputError error(const std::string& what) const;
   std::string where() const;
-  /// Throws InputError when a scan that is finished in the latest line is impossible, or one too many.
+  /// Throws InputError when a sweep that ends in the latest line is impossible, or one too many.
   void require_plausible(const Sweep& sweep);
   /// Throws InputError unless `fault`, see scan/plausibility.hpp, is empty.
   void refuse(const std::string& fault) const;
-  /// The number that `word` of the latest line is. Throws InputError naming `name` when it is none, or not finite.
+  /// Returns the number in `word` of the latest line. Throws InputError, which names `name`, when it is none or not
+  /// finite.
   double finite(std::string_view word, const char* name) const;
 
  private:
@@ -38,13 +39,13 @@ class LineReader {
   std::size_t pending_ = 0;  ///< bytes of the latest line, still in the window
 };
 
-/// The words of a line, separated by blanks and, if asked for, by another character.
+/// Splits a line into words, separated by blanks and, if asked for, by another character.
 class Words {
  public:
   explicit Words(std::string_view text, char also_separates = ' ') : rest_(text), separator_(also_separates) {}
-  /// The next word; empty at the end.
+  /// Returns the next word; empty at the end.
   std::string_view next();
-  /// Steps over `count` words without looking at them; how many there were.
+  /// Steps over up to `count` words, and returns how many there were.
   std::size_t skip(std::size_t count);
   std::size_t count_left() const;
 
@@ -55,15 +56,15 @@ class Words {
   char separator_;
 };
 
-/// The number that is the whole of `word`. Too large to hold is infinite; `nan` and `inf` are numbers.
+/// Returns the number that is the whole of `word`. A number too large to hold is infinite; `nan` and `inf` are numbers.
 std::optional<double> parse_number(std::string_view word);
 std::optional<long long> parse_count(std::string_view word);
 
-/// A reading as a text log gives it; `-`, nan and inf hit nothing and become NaN; what is negative says nothing and
-/// becomes 0. Nothing when the word is no reading at all.
+/// Parses a reading of a text log, or returns nothing when the word is no reading at all. `-`, nan and inf are no
+/// returns and become NaN; a negative reading says nothing and becomes 0.
 std::optional<float> parse_range(std::string_view word, double metres_per_unit);
 
-/// The shortest decimal text that reads back as the same value.
+/// Appends the shortest decimal text that reads back as the same value.
 template <class Number>
 void append_number(std::string& text, Number value) {
   char buffer[64];

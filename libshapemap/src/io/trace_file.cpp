@@ -35,20 +35,20 @@ void TraceFile::on_alignment(const TracedAlignment& alignment) {
   write_line(alignment_json(alignment, run_.mapping.paper.lcs.target), *sink_);
 }
 
-void TraceFile::on_link(const TracedLink& edge) { write_line(link_json(edge), *sink_); }
+void TraceFile::on_link(const TracedLink& edge) { write_line(edge_json(edge), *sink_); }
 
 void TraceFile::on_choice(const TracedChoice& choice) { write_line(choice_json(choice), *sink_); }
 
 void TraceFile::on_revision(const TracedRevision& revision) { write_line(revision_json(revision), *sink_); }
 
 void TraceFile::commit(const MapResult& result) {
-  // Where each position stands in its fragment: both are in the order of the log.
-  std::vector<std::size_t> next_of_fragment(result.components.size(), 0);
+  // Scans and components are both in the order of the log, so that counting finds the entry of each scan.
+  std::vector<std::size_t> next_of_component(result.components.size(), 0);
   for (const ScanResult& scan : result.scans) {
     const PlacedScan* placed = nullptr;
     if (scan.component >= 0) {
       const auto component = static_cast<std::size_t>(scan.component);
-      placed = &result.components.at(component).scans.at(next_of_fragment[component]++);
+      placed = &result.components.at(component).scans.at(next_of_component[component]++);
     }
     write_line(result_json(scan, placed), *sink_);
   }

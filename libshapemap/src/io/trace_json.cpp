@@ -23,7 +23,7 @@ Json polylines_json(const Sweep& sweep, int index, const MappingOptions& options
           {"em_iterations", shape.polylines.iterations}};
 }
 
-/// Bins and values in turn, without the empty ones, of which there are many.
+/// Writes bins and values in turn, without the empty ones, of which there are many.
 Json histograms_json(const std::vector<ShapePoint>& points, const HistogramOptions& options) {
   Json all = Json::array();
   const NeighbourDirections directions(Shape{points, 0}, options.radius_m);
@@ -39,7 +39,7 @@ Json histograms_json(const std::vector<ShapePoint>& points, const HistogramOptio
   return all;
 }
 
-/// Correspondences as [query point, target position, target point], by their index in the positions' records.
+/// Writes correspondences as [query point, target scan, target point], by their index in the records of the scans.
 class PairNames {
  public:
   PairNames(const std::vector<TracedTarget>& targets, LcsTarget target) : targets_(targets), target_(target) {}
@@ -101,7 +101,7 @@ void add_best_rotation(const TracedAlignment& traced, LcsTarget target, Json& al
   all["kept"] = names(best.translation.kept);
 }
 
-Json hypotheses_json(const std::vector<MatchCandidate>& candidates) {
+Json candidates_json(const std::vector<MatchCandidate>& candidates) {
   Json all = Json::array();
   for (const MatchCandidate& candidate : candidates) {
     all.push_back(ranked_json(ranked_pose(candidate)));
@@ -117,7 +117,7 @@ Json run_json(const TracedRun& run) {
   add_options(run.reading, options);
   add_options(run.selection, options);
   MappingOptions::groups(run.mapping, [&](const char*, const auto& group) { add_options(group, options); });
-  options.erase("threads");  // part of no result
+  options.erase("threads");  // the number of threads changes no result
   Json logs = Json::array();
   for (const LogPart& part : parts_of(run.log)) {
     logs.push_back({{"path", run.log_paths.at(logs.size())}, {"first_index", part.first}});
@@ -177,13 +177,13 @@ Json alignment_json(const TracedAlignment& traced, LcsTarget target) {
   return all;
 }
 
-Json link_json(const TracedLink& edge) {
+Json edge_json(const TracedLink& edge) {
   return {{"record", "link"},
           {"reference", edge.reference_index},
           {"query", edge.query_index},
           {"num_own", edge.num_own},
           {"view_shortfall", edge.insufficient_view},
-          {"hypotheses", hypotheses_json(edge.candidates)}};
+          {"hypotheses", candidates_json(edge.candidates)}};
 }
 
 Json choice_json(const TracedChoice& choice) {
@@ -195,7 +195,7 @@ Json choice_json(const TracedChoice& choice) {
 }
 
 Json revision_json(const TracedRevision& revision) {
-  Json candidates = hypotheses_json(revision.candidates);
+  Json candidates = candidates_json(revision.candidates);
   for (std::size_t k = 0; k < revision.support_by_others.size(); ++k) {
     candidates[k]["for_it"] = revision.support_by_others[k].for_it;
     candidates[k]["against_it"] = revision.support_by_others[k].against_it;

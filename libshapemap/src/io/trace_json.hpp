@@ -4,20 +4,20 @@
 #include "json_parts.hpp"
 #include "shapemap/io/trace_file.hpp"
 
-/// The records of a trace.
+/// These functions make the records of a trace.
 namespace shapemap {
 
 Json run_json(const TracedRun& run);
 
-/// `points` are those that the method looks at. Polylines and histograms are made once more, the same way.
+/// `points` are those that the method uses. Polylines and histograms are computed once more, in the same way.
 Json scan_json(const TracedRun& run, std::size_t scan_index, const std::vector<ShapePoint>& points);
 
 Json alignment_json(const TracedAlignment& traced, LcsTarget target);
-Json link_json(const TracedLink& edge);
+Json edge_json(const TracedLink& edge);
 Json choice_json(const TracedChoice& choice);
 Json revision_json(const TracedRevision& revision);
 
-/// `placed` is null for a position that is in no fragment.
+/// `placed` is null for a scan that is in no component.
 Json result_json(const ScanResult& scan, const PlacedScan* placed);
 
 Json end_json(const MapResult& result);

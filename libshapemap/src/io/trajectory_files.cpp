@@ -18,7 +18,7 @@ constexpr std::array<const char*, 8> kTumNames{"the timestamp", "x", "y", "z", "
 constexpr std::array<const char*, 10> kMotionNames{
     "the timestamp", "x_m", "y_m", "theta_rad", "xx", "xy", "xt", "yy", "yt", "tt"};
 
-/// Variances of a motion that no alignment holds but the rest of the map: 1 m and 1 rad.
+/// The variances of a motion that no match constrains, only the rest of the map, are 1 m and 1 rad squared.
 const Eigen::Vector3d kUnheld = Eigen::Vector3d::Ones();
 
 /// Calls `take(lines, values)` for each line that holds more than a remark.
@@ -48,8 +48,8 @@ bool is_covariance(const Eigen::Matrix3d& matrix) {
   return values.allFinite() && values.minCoeff() >= -1e-9 * std::max(1e-9, values.maxCoeff());
 }
 
-/// Of a motion to `position` from the one before it. That is what `position` is aligned to, or else its `sibling`: both
-/// are aligned to the same keyframe, and then both alignments err.
+/// Returns the covariance of the motion to `scan` from the placed scan before it. Either `scan` is matched with that
+/// one, or with the same keyframe as its `sibling`, and then the errors of both matches add up.
 Eigen::Matrix3d covariance_of(const Pose2& motion, const ScanResult& scan, const ScanResult* sibling) {
   const ScanMatch& match = scan.match;
   if (!match.covariance.allFinite()) {

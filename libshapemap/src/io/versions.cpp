@@ -6,7 +6,7 @@
 namespace shapemap {
 
 std::vector<std::pair<std::string, std::string>> component_versions() {
-  // From the build system, which found these packages: their headers stay where they are used.
+  // The build system found these packages, so that their headers stay where they are used.
   return {{"shapemap", kVersion},
           {"MRPT", SHAPEMAP_MRPT_VERSION},
           {"OpenCV", SHAPEMAP_OPENCV_VERSION},

@@ -7,12 +7,14 @@
 namespace shapemap {
 namespace {
 
-/// So many tell what is usual: twice what this share is within, for those that are not followed move more.
+/// So many scans tell what is usual. The bound is twice the quantile of this share, since scans that are not tracked
+/// move more.
 constexpr std::size_t kEnough = 50;
 constexpr double kMostOfThem = 0.95;
 constexpr double kSlack = 2.0;
 
-/// Of kUsualSurprise: what scans hold a pose to, and how even time stamps are.
+/// The usual deviation is at least this share of kUsualSurprise, because scans fix a pose, and time stamps are even,
+/// only to such a degree.
 constexpr double kLeast = 0.125;
 
 }  // namespace

@@ -8,24 +8,24 @@
 
 namespace shapemap {
 
-/// Where scans follow each other closely, the next one is usually so near to where it was to be expected, at worst.
+/// Where scans follow each other closely, the next one is usually at most this far from its expected pose.
 inline constexpr double kUsualSurprise_m = 0.4;
 inline constexpr double kUsualSurprise_rad = 25 * kDegree;
 
-/// Where the motion so far would take the sensor.
+/// The pose to which constant velocity would take the sensor.
 struct ExpectedPose {
-  Pose2 pose;                         ///< in the frame of the keyframe before
-  double usual_m = kUsualSurprise_m;  ///< it is usually found so near
+  Pose2 pose;                         ///< in the frame of the last keyframe
+  double usual_m = kUsualSurprise_m;  ///< usual bound of the deviation from `pose`
   double usual_rad = kUsualSurprise_rad;
 };
 
-/// As logarithm of odds against it, of a scan that is found so far from where it was to be expected.
+/// Returns the logarithm of the odds against a scan that is found at `found` rather than at its expected pose.
 double surprise(const ExpectedPose& expected, const Pose2& found);
 
-/// Learns from the scans that were followed how near the next one usually is.
+/// Learns from tracked scans how near the next one usually is to its expected pose.
 class ConstantVelocityPrior {
  public:
-  /// A scan was found so far off.
+  /// Records the deviation of a tracked scan from its expected pose.
   void learn(const Pose2& off);
 
   ExpectedPose at(const Pose2& pose) const;

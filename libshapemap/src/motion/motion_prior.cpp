@@ -12,19 +12,19 @@ constexpr std::size_t kStepBins = 200;  // longer steps are as unusual as the lo
 constexpr std::size_t kAngleBins = 180;
 constexpr double kAngleBin_rad = 2.0 * kPi / static_cast<double>(kAngleBins);
 
-/// Deviations of the kernels, at least: of what is known, and of what is asked about.
-constexpr double kStepKernel_m = 0.25;  ///< of long steps
+/// The kernels of known motions and of the motion in question deviate by at least this much.
+constexpr double kStepKernel_m = 0.25;  ///< kernel of long steps
 constexpr double kAngleKernel_rad = 12 * kDegree;
 
-/// Of short steps, half of what is usual, if so many tell; at least this.
+/// The kernel of short steps is half of the usual step, if so many steps tell it, and at least this.
 constexpr std::size_t kTellOfSteps = 20;
 constexpr double kLeastStepKernel_m = 0.05;
 
-/// The direction of a step tells the more, the longer it is, up to this length.
+/// The direction of a step counts the more, the longer the step is, up to this length.
 constexpr double kHasDirection_m = 0.5;
 
-/// The share of motions of a kind that was never seen before falls as kinds become more like the root of the number of
-/// motions (the law of Heaps, 1978), and no further than this.
+/// The share of motions of a kind that was never seen falls as kinds grow like the root of the number of motions (the
+/// law of Heaps, 1978), and no further than this.
 constexpr double kLeastUnheard = 0.03;
 double share_of_unheard(std::size_t num_known) {
   return num_known == 0 ? 1.0 : std::max(kLeastUnheard, 0.5 / std::sqrt(static_cast<double>(num_known)));
@@ -46,15 +46,15 @@ double weight_of_direction(const Pose2& motion) { return std::min(1.0, motion.tr
 
 double gaussian(double deviations) { return std::exp(-0.5 * deviations * deviations); }
 
-/// Relative to the densest bin; all 1 of nothing.
+/// Scales a density to that of its densest bin; an empty one becomes 1 everywhere.
 std::vector<double> relative(std::vector<double> density) {
   const double most = *std::max_element(density.begin(), density.end());
   for (double& value : density) value = most > 0.0 ? value / most : 1.0;
   return density;
 }
 
-/// By the rule of Silverman (1986): the wider, the fewer and the more spread the values are. Most robots turn seldom;
-/// the middle half tells of those.
+/// Chooses the width of a kernel by the rule of Silverman (1986): it grows as values become fewer and more spread. The
+/// middle half counts too, because most robots turn seldom.
 double kernel(std::vector<double> values, double least) {
   if (values.size() < 2) return least;
   const auto count = static_cast<double>(values.size());
@@ -76,7 +76,7 @@ double least_step_kernel_m(std::vector<double> steps_m) {
   return std::clamp(0.5 * steps_m[steps_m.size() / 2], kLeastStepKernel_m, kStepKernel_m);
 }
 
-/// Of steps: what would lie below 0 is mirrored there.
+/// Computes the density of step lengths; mass below 0 is mirrored there.
 std::vector<double> density_of_steps(const std::vector<Pose2>& motions) {
   std::vector<double> steps_m;
   for (const Pose2& motion : motions) steps_m.push_back(motion.translation().norm());
@@ -96,7 +96,7 @@ struct WeightedAngle {
   double weight;
 };
 
-/// Of angles all around.
+/// Computes the density of angles on the circle.
 std::vector<double> density_of_angles(const std::vector<WeightedAngle>& angles) {
   Point2 mean = Point2::Zero();
   for (const WeightedAngle& one : angles) mean += one.weight * rotate({1.0, 0.0}, one.angle_rad);

@@ -7,13 +7,13 @@
 
 namespace shapemap {
 
-/// Nineteen of twenty steps are shorter, and turn less.
+/// Nineteen of twenty steps are shorter than `step_m` and turn by less than `turn_rad`.
 struct StepStatistics {
   double step_m;
   double turn_rad;
 };
 
-/// Of steps that are known, `a_from_b` each.
+/// Computes the statistics of known steps, each `a_from_b`; lower bounds replace those of too few steps.
 StepStatistics step_statistics(const std::vector<Pose2>& steps);
 
 }  // namespace shapemap

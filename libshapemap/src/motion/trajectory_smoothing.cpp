@@ -8,11 +8,11 @@
 namespace shapemap {
 namespace {
 
-/// From scan to scan, where they follow each other closely.
+/// Scans that follow each other closely are at most this far apart.
 constexpr double kLongestStep_m = 0.20;
 constexpr double kLargestTurn_rad = 10 * kDegree;
 
-/// A scan is usually so near the middle between the one before and the one after.
+/// A scan usually deviates so much from the middle between the one before and the one after.
 constexpr double kUsualOff_m = 0.10;
 constexpr double kUsualOff_rad = 5 * kDegree;
 

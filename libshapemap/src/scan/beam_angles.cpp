@@ -15,7 +15,7 @@ constexpr double kTurn_rad = 2.0 * kPi;
 constexpr double kRounding = 1e-3;          // headers hold 32-bit floats, or a few decimals
 constexpr double kStepsOfDifference = 1.5;  // a full circle has its first beam twice, once, or not quite
 
-/// The share of a turn that is left for rounding, and for a last beam that closes the circle.
+/// A span may exceed a turn by rounding, and by the step of a last beam that closes the circle.
 bool is_within_a_turn(double span_rad, double step_rad) {
   return std::abs(span_rad) <= kTurn_rad * (1.0 + kRounding) + std::abs(step_rad);
 }
@@ -33,7 +33,7 @@ std::optional<double> usable_span_rad(const StatedAngles& stated) {
   return span_rad;
 }
 
-/// The middle one of the distances between neighbours, 0 distances left out.
+/// Returns the median distance between neighbouring angles, without distances of 0.
 double typical_spacing_rad(std::vector<double> angles_rad) {
   std::sort(angles_rad.begin(), angles_rad.end());
   std::vector<double> spacings_rad;

@@ -9,13 +9,13 @@ namespace shapemap {
 namespace {
 
 constexpr std::size_t kComparedBeams = 128;
-constexpr std::size_t kFewestCompared = 8;  // with fewer, a view counts as seen before
-constexpr double kSameShare = 0.4;         // of readings that agree: people may walk through a view that stays the same
-constexpr double kSame_mm = 50.0;          // the noise of the roughest sensors,
-constexpr double kSameOfRange = 0.05;      // and by so much of the range must the robot have moved
-constexpr double kClearly = 3.0;           // standard deviations by which a robot rather stood than turned
-constexpr std::size_t kEnoughViews = 512;  // in a zone
-constexpr std::size_t kGlance = 16;        // if none of so many readings agree, no more are compared
+constexpr std::size_t kFewestCompared = 8;  // a view with fewer compared beams counts as seen before
+constexpr double kSameShare = 0.4;     // share of equal readings: people may walk through a view that stays the same
+constexpr double kSame_mm = 50.0;      // this is the noise of the roughest sensors, and
+constexpr double kSameOfRange = 0.05;  // the robot must have moved by this share of the range
+constexpr double kClearly = 3.0;       // standard deviations by which a robot rather stood than turned
+constexpr std::size_t kEnoughViews = 512;  // of one zone
+constexpr std::size_t kGlance = 16;        // if none of so many readings are equal, no more are compared
 
 }  // namespace
 
@@ -32,14 +32,14 @@ bool DistinctViews::is_enough() const {
 
 void DistinctViews::add_sweep(std::size_t turn) {
   const RangeSample::SampledSweep& sweep = sample_.sweeps()[turn * stride_ % sample_.sweeps().size()];
-  for (std::size_t i = sweep.first_fragment; i < sweep.end_fragment; ++i) {
-    const Fragment& fragment = sample_.fragments()[i];
-    if (fragment.farthest_mm < window_.from_mm - side_mm_ || fragment.nearest_mm >= window_.end_mm + side_mm_) continue;
-    const Shares shares = shares_of(fragment);
+  for (std::size_t i = sweep.first_segment; i < sweep.end_segment; ++i) {
+    const RangeSegment& segment = sample_.segments()[i];
+    if (segment.farthest_mm < window_.from_mm - side_mm_ || segment.nearest_mm >= window_.end_mm + side_mm_) continue;
+    const Shares shares = shares_of(segment);
     const double most = std::max({shares.inside, shares.below, shares.above});
     if (most <= 0.0) continue;
     Zone& zone = shares.inside == most ? inside_ : shares.below == most ? below_ : above_;
-    const View view{fragment.sweep, fragment.middle(), static_cast<double>(fragment.last - fragment.first + 1)};
+    const View view{segment.sweep, segment.middle(), static_cast<double>(segment.last - segment.first + 1)};
     if (is_enough() || !is_new(zone, view)) continue;
     zone.views.push_back(view);
     inside_.weight += shares.inside;
@@ -48,11 +48,11 @@ void DistinctViews::add_sweep(std::size_t turn) {
   }
 }
 
-DistinctViews::Shares DistinctViews::shares_of(const Fragment& fragment) const {
-  const Millimetres* readings_mm = sample_.readings(sample_.sweeps()[fragment.sweep]);
-  const double each = 1.0 / static_cast<double>(fragment.num_readings);
+DistinctViews::Shares DistinctViews::shares_of(const RangeSegment& segment) const {
+  const Millimetres* readings_mm = sample_.readings(sample_.sweeps()[segment.sweep]);
+  const double each = 1.0 / static_cast<double>(segment.num_readings);
   Shares shares;
-  for (std::size_t beam = fragment.first; beam <= fragment.last; ++beam) {
+  for (std::size_t beam = segment.first; beam <= segment.last; ++beam) {
     const Millimetres range_mm = readings_mm[beam];
     if (range_mm == 0 || range_mm < window_.from_mm - side_mm_ || range_mm >= window_.end_mm + side_mm_) continue;
     (is_inside(range_mm) ? shares.inside : range_mm < window_.from_mm ? shares.below : shares.above) += each;
@@ -75,7 +75,7 @@ double DistinctViews::Likeness::variance_of_mean() const {
 
 bool DistinctViews::is_same(const View& a, const View& b) const {
   const double step_rad = sample_.sweeps()[b.sweep].step_rad;
-  const double middle_of_b = b.middle * step_rad / sample_.sweeps()[a.sweep].step_rad;  // in beams of a
+  const double middle_of_b = b.middle * step_rad / sample_.sweeps()[a.sweep].step_rad;  // counted in beams of a
   if (std::abs(a.middle - middle_of_b) < 0.5 * (a.num_beams + b.num_beams)) {
     if (likeness(a, middle_of_b, b, b.middle).is_alike()) return true;
   }

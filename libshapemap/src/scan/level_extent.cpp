@@ -9,12 +9,12 @@ namespace shapemap {
 namespace {
 
 constexpr double kFewestOfLevel = 0.002;  // rarer distances are odd readings beside a level
-constexpr double kTimesAround = 2.5;      // by which surfaces may be denser than around
-constexpr double kSigmas = 5.0;           // by which a distance has more readings than those around
-constexpr double kMostOfLevel = 0.9;      // so much of a level is made of single distances, or it is spread evenly
-constexpr Millimetres kBeside = 8;        // widths on each side that tell what is usual
+constexpr double kTimesAround = 2.5;      // surfaces may be so many times denser than what is around
+constexpr double kSigmas = 5.0;           // a distance of a level has so many more readings than those around
+constexpr double kMostOfLevel = 0.9;      // single distances make so much of a level, or it is spread evenly
+constexpr Millimetres kBeside = 8;        // so many widths on each side tell what is usual
 
-/// How often each distance around a window was read.
+/// Counts how often each distance around a window was read.
 class Readings {
  public:
   Readings(const std::vector<Sweep*>& sweeps, const LevelWindow& window, Millimetres reach_mm)
@@ -39,7 +39,7 @@ class Readings {
     for (Millimetres range_mm = from_mm; range_mm < end_mm; ++range_mm) sum += count(range_mm);
     return sum;
   }
-  /// The most frequent distance of the window.
+  /// Returns the most frequent distance of the window.
   Millimetres fullest() const {
     Millimetres fullest_mm = window_.from_mm;
     for (Millimetres range_mm = window_.from_mm; range_mm < window_.end_mm; ++range_mm) {
@@ -47,7 +47,8 @@ class Readings {
     }
     return fullest_mm;
   }
-  /// What an interval of `width_mm` usually holds on the denser side; the rest of a level may be on one of them.
+  /// Returns what an interval of `width_mm` usually holds on the denser side; the rest of a level may be on one of
+  /// them.
   double usual_beside(Millimetres width_mm) const {
     return std::max(median_count(first_mm_, window_.from_mm, width_mm),
                     median_count(window_.end_mm, end_mm(), width_mm));
@@ -75,7 +76,7 @@ LevelExtent extent_of(const std::vector<Sweep*>& sweeps, const LevelWindow& wind
   const Millimetres gap_mm = std::max(resolution_mm, window.width_mm());
   const Readings readings(sweeps, window, kBeside * gap_mm);
   const double in_window = readings.count(window.from_mm, window.end_mm);
-  const double around = readings.usual_beside(resolution_mm);  // all of them may lie on one distance
+  const double around = readings.usual_beside(resolution_mm);  // all readings of an interval may lie on one distance
   const double fewest = std::max(kTimesAround * around + kSigmas * std::sqrt(around) + 1.0, kFewestOfLevel * in_window);
 
   double of_single = 0.0;

@@ -11,20 +11,21 @@ namespace shapemap {
 namespace {
 
 constexpr double kErrorPerSensor = 1e-6;
-constexpr std::array<Millimetres, 2> kBeside{8, 24};  // the more, the stronger the test, but for levels among surfaces
+constexpr std::array<Millimetres, 2> kBeside{8, 24};  // more make the test stronger, but for levels among surfaces
 constexpr Millimetres kNarrowest_mm = 2;
-constexpr Millimetres kNearest_mm = 20;      // no laser measures surfaces that are nearer
-constexpr Millimetres kWidest_mm = 512;      // spread levels are up to 0.2 m wide, and need not lie well in a window
-constexpr double kWidestShare = 0.02;        // of the distance: wider, people who walk by would keep inside
-constexpr Millimetres kCoarsest_mm = 64;     // steps of readings are up to 5 cm
-constexpr double kEvenShare = 0.2;           // of the weight of a side: 1/8 where readings are spread evenly
-constexpr double kQuantile = 0.25;           // levels may hold most of the weight, but not three quarters
-constexpr std::size_t kMostCandidates = 24;  // in each round
-constexpr std::size_t kFirstStage = 64;      // sweeps; each stage has four times as many as the one before
+constexpr Millimetres kNearest_mm = 20;  // no laser measures surfaces that are nearer
+constexpr Millimetres kWidest_mm = 512;  // spread levels are up to 0.2 m wide, and need not lie well in a window
+constexpr double kWidestShare = 0.02;    // as a share of the distance: people who walk by would keep inside a wider one
+constexpr Millimetres kCoarsest_mm = 64;  // steps of readings are up to 5 cm
+constexpr double kEvenShare = 0.2;  // as a share of a side's weight, which is 1/8 where readings are spread evenly
+constexpr double kQuantile = 0.25;  // levels may hold most of the weight, but not three quarters
+constexpr std::size_t kMostCandidates = 24;  // in each round of the test
+constexpr std::size_t kFirstStage = 64;      // in sweeps; each stage has four times as many as the one before
 constexpr double kNumStages = 6;
-constexpr double kSlack = 2.0;  // by which the rest of the sweeps may say more than those seen
+constexpr double kSlack = 2.0;  // the remaining sweeps may say so many times more than those seen
 
-/// What a window may hold of its own weight and that of the windows beside: all of them, of a wall seen square-on.
+/// Bounds the share that a window may hold of its own weight and that of the windows beside it. A wall that is seen
+/// square-on reaches the bound.
 double largest_share(const LevelWindow& window) {
   const double distant = 1.0 / std::sqrt(1.0 + window.num_beside);
   if (window.from_mm < kNearest_mm) return distant;
@@ -32,7 +33,8 @@ double largest_share(const LevelWindow& window) {
   return std::acos(1.0 / (1.0 + of_width)) / std::acos(1.0 / (1.0 + (1.0 + window.num_beside) * of_width));
 }
 
-/// Logarithm of a bound of the probability that `inside` of `inside + beside` fall inside, or more.
+/// Returns the logarithm of a Chernoff bound of the probability that at least `inside` of `inside + beside` fall
+/// inside.
 double log_chernoff(double inside, double beside, const LevelWindow& window) {
   const double total = inside + beside;
   if (total <= 0.0 || inside * inside * (1.0 + window.num_beside) <= total * total) return 0.0;
@@ -56,10 +58,10 @@ LevelTest::LevelTest(RangeSample& sample) : sample_(sample) {
 
 void LevelTest::add_up_weights() {
   std::vector<double> weights(static_cast<std::size_t>(sample_.longest_mm()) + 1, 0.0);
-  for (const Fragment& fragment : sample_.fragments()) {
-    const Millimetres* readings_mm = sample_.readings(sample_.sweeps()[fragment.sweep]);
-    const double each = 1.0 / static_cast<double>(fragment.num_readings);
-    for (std::size_t beam = fragment.first; beam <= fragment.last; ++beam) {
+  for (const RangeSegment& segment : sample_.segments()) {
+    const Millimetres* readings_mm = sample_.readings(sample_.sweeps()[segment.sweep]);
+    const double each = 1.0 / static_cast<double>(segment.num_readings);
+    for (std::size_t beam = segment.first; beam <= segment.last; ++beam) {
       weights[static_cast<std::size_t>(readings_mm[beam])] += readings_mm[beam] > 0 ? each : 0.0;
     }
   }
@@ -104,7 +106,7 @@ std::vector<LevelWindow> LevelTest::candidates() {
   for (Millimetres width_mm = resolution_mm_; width_mm <= kWidest_mm; width_mm *= 2) {
     num_windows_ += kBeside.size() * occupied_mm_.size();
     for (const Millimetres from_mm : occupied_mm_) {
-      // A wall is seen square-on by a few beams only: the side has its share of them from this width on.
+      // A few beams only see a wall square-on: the side has its share of them from this width on.
       if (width_mm < 0.25 * step_rad * step_rad * from_mm) break;
       if (width_mm > resolution_mm_ && width_mm > kWidestShare * from_mm) continue;
       for (const Millimetres num_beside : kBeside) {
@@ -129,7 +131,7 @@ std::vector<LevelWindow> LevelTest::candidates() {
 double LevelTest::allowed_log_error(const LevelWindow& window) const {
   const bool is_at_end = window.from_mm <= occupied_mm_.front() || window.end_mm > occupied_mm_.back();
   double count = static_cast<double>(num_windows_);
-  if (is_at_end) {  // two ends, each width
+  if (is_at_end) {  // each width has a window at both ends
     count = 2.0 * static_cast<double>(kBeside.size());
     for (Millimetres width_mm = resolution_mm_; width_mm < kWidest_mm; width_mm *= 2) {
       count += 2.0 * static_cast<double>(kBeside.size());
@@ -148,7 +150,7 @@ bool LevelTest::is_level(LevelWindow& window) const {
     window.log_error = log_chernoff(views.inside(), std::max(views.below(), views.above()), window);
     if (window.log_error < allowed) return true;
     const double at_most = kSlack * window.log_error * static_cast<double>(num_sweeps) / static_cast<double>(seen);
-    if (views.is_enough() || at_most > allowed) return false;  // views become rarer, not more
+    if (views.is_enough() || at_most > allowed) return false;  // views become rarer, not more frequent
     stage_end *= 4;
   }
   return false;

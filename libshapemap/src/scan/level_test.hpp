@@ -8,33 +8,35 @@
 
 namespace shapemap {
 
-/// Distances from `from_mm` on and below `end_mm`, on which suspiciously many fragments lie.
+/// The distances from `from_mm` up to, but without, `end_mm`, on which suspiciously many range segments lie.
 struct LevelWindow {
   Millimetres from_mm = 0;
   Millimetres end_mm = 0;
-  Millimetres num_beside = 0;  ///< what is compared with on each side, in widths
+  Millimetres num_beside = 0;  ///< number of widths on each side that it is compared with
   double log_error = 0.0;      ///< bound of the logarithm of the probability that real surfaces look like this
   Millimetres width_mm() const { return end_mm - from_mm; }
 };
 
-/// Looks for distances at which there are more fragments than surfaces can make, in a sample of one sensor's sweeps.
+/// Looks for distances at which there are more range segments than surfaces can make, in a sample of one sensor's
+/// sweeps.
 ///
-/// Null hypothesis: fragments are surfaces. Each has a weight of one, spread over its readings. Of the densest case, a
-/// flat wall seen square-on from d, the beams between d and d + w span an angle of sqrt(2 w / d), those from d to
-/// d + (n + 1) w one of sqrt(2 (n + 1) w / d): of a window and the n windows on its denser side, the window holds at
-/// most a share of 1 / sqrt(n + 1) (somewhat more where w is not small beside d). The independent units are fragments
-/// in views that differ; turning on the spot or standing makes no new view. By how much the share is exceeded is judged
-/// by Hoeffding's form of the Chernoff bound. Half of the error that is allowed is for windows at the shortest and the
-/// longest readings, where levels usually are.
+/// The null hypothesis is that segments are surfaces. Each has a weight of one, spread over its readings. In the
+/// densest case, a flat wall seen square-on from d, the beams between d and d + w span an angle of sqrt(2 w / d), and
+/// those from d to d + (n + 1) w one of sqrt(2 (n + 1) w / d): of a window and the n windows on its denser side, the
+/// window holds at most a share of 1 / sqrt(n + 1) (somewhat more where w is not small beside d). The independent units
+/// are segments in views that differ; turning on the spot or standing makes no new view. The Chernoff bound in
+/// Hoeffding's form (1963) judges by how much the share is exceeded. Half of the allowed error is for windows at the
+/// shortest and the longest readings, where levels usually are.
 class LevelTest {
  public:
   explicit LevelTest(RangeSample& sample);
 
-  /// The most improbable window, if the null hypothesis does not hold for it; to be asked again once its readings were
-  /// removed from the sample.
+  /// Returns the most improbable window that refutes the null hypothesis, if there is one. The caller removes its
+  /// readings from the sample before it asks again.
   std::optional<LevelWindow> next();
 
-  /// The narrowest window in which the readings of real surfaces are spread evenly, in spite of their quantisation.
+  /// Returns the narrowest window in which the readings of real surfaces are spread evenly in spite of their
+  /// quantisation.
   Millimetres resolution_mm() const { return resolution_mm_; }
 
  private:

@@ -20,15 +20,16 @@ namespace shapemap {
 namespace {
 
 constexpr std::size_t kMostLevels = 32;        // of one sensor; each costs a round of the test
-constexpr std::size_t kFewSweeps = 64;         // sensors with fewer are looked at together
+constexpr std::size_t kFewSweeps = 64;         // sensors with fewer are examined together
 constexpr std::size_t kTooFewSweeps = 12;      // so few independent views cannot be sure of anything by themselves
-constexpr double kFarBeyondHeader = 1.1;       // what is just beyond a maximum may be noise, or the maximum itself
-constexpr double kFewestBeyondHeader = 0.005;  // of all readings
-constexpr double kApartOfLevel = 0.02;         // what is nearer to a level, in its distance, may be odd readings of it
+constexpr double kFarBeyondHeader = 1.1;       // readings just beyond a maximum may be noise, or the maximum itself
+constexpr double kFewestBeyondHeader = 0.005;  // as a share of all readings
+// readings nearer to a level, as a share of its distance, may be odd readings of it
+constexpr double kApartOfLevel = 0.02;
 constexpr Millimetres kNowhere_mm = std::numeric_limits<Millimetres>::max();
 
-/// SICK lasers count up to 8182 in units of 1 cm or 4 mm; 8183 to 8191 are error codes. Known of the device, they are
-/// believed in logs that are too short for a test, if nothing longer is in them.
+/// SICK lasers count up to 8182 in units of 1 cm or 4 mm; 8183 to 8191 are error codes. Logs that are too short for a
+/// test are believed to have these known codes, if nothing longer is in them.
 constexpr std::array<LevelExtent, 2> kSickCodes{{{81825, 81915}, {32730, 32770}}};
 constexpr std::size_t kTimesMoreThanBelow = 5;
 
@@ -93,7 +94,7 @@ void learn_levels(std::vector<Sensor>& sensors) {
   for (Sensor* sensor : few) sensor->levels = levels;
 }
 
-/// The start of the lowest level with no surfaces beyond it.
+/// Returns the start of the lowest level with no surfaces beyond it.
 Millimetres top_of(const Sensor& sensor) {
   Millimetres top_mm = kNowhere_mm;
   for (auto level = sensor.levels.rbegin(); level != sensor.levels.rend(); ++level) {
@@ -105,7 +106,7 @@ Millimetres top_of(const Sensor& sensor) {
   return top_mm;
 }
 
-/// Maxima of the header that surfaces lie far beyond.
+/// Drops the maximum ranges of headers that surfaces lie far beyond.
 void give_up_wrong_maxima(const Sensor& sensor, Millimetres top_mm, std::vector<std::string>& warnings) {
   std::map<double, Sweeps> by_maximum;
   for (Sweep* sweep : sensor.sweeps) {
@@ -153,7 +154,7 @@ void believe_sick_codes(Sensor& sensor) {
   }
 }
 
-/// Notes what lies on the levels, and makes the readings no returns.
+/// Notes the readings on the levels, and makes them no returns.
 void take_levels(Sensor& sensor, Millimetres top_mm, std::vector<NoReturnLevel>& noted) {
   double top_m = top_mm < kNowhere_mm ? top_mm / 1000.0 : 0.0;
   for (const LevelExtent& level : sensor.levels) {

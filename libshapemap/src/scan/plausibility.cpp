@@ -14,7 +14,7 @@ namespace {
 
 using namespace plausible;
 
-/// A number of a scan, and how far from 0 it may be.
+/// A number of a sweep has a largest plausible magnitude.
 struct Bounded {
   const char* name;
   double value;
@@ -29,7 +29,7 @@ std::string stated(const char* name, double value, const char* unit, const std::
   return text.str();
 }
 
-/// Written so that NaN is a fault.
+/// Returns the fault of the first number out of its bounds. The comparison is written so that NaN is a fault.
 std::string first_fault(std::initializer_list<Bounded> numbers) {
   for (const Bounded& number : numbers) {
     if (std::abs(number.value) <= number.most) continue;
@@ -38,7 +38,7 @@ std::string first_fault(std::initializer_list<Bounded> numbers) {
   return "";
 }
 
-/// Where the beams of a scan point that is evenly spaced.
+/// Judges the directions of evenly spaced beams.
 std::string fault_of_angles(const Sweep& sweep, std::size_t num_beams) {
   const double step_rad = std::abs(sweep.angle_step_rad);
   const std::string out_of_bounds =
@@ -54,7 +54,8 @@ std::string fault_of_angles(const Sweep& sweep, std::size_t num_beams) {
       {{"an angle from the first beam to the last", span_rad, kMostScanAngle_rad, " rad", "at most two full turns"}});
 }
 
-/// Where beams with an angle each point. What is made of them has a place for every step between the outermost.
+/// Judges beams with an angle each. The even beams made of them later have a place for every step between the
+/// outermost.
 std::string fault_of_beam_angles(const Sweep& sweep) {
   for (const double angle_rad : sweep.beam_angles_rad) {
     if (std::abs(angle_rad) <= kMostScanAngle_rad) continue;  // written so that NaN is a fault
@@ -100,7 +101,7 @@ std::string fault_of_mount(const MountPose& mount) {
                       {"a mount's roll", mount.roll_rad, kMostScanAngle_rad, " rad", kAngle}});
 }
 
-/// Limits below 0 say no more than 0 does.
+/// Limits below 0 state no more than 0 does, so only the magnitude counts.
 std::string fault_of_limits(const Sweep& sweep) {
   return first_fault({{"min_range", sweep.min_range_m, kMostMinRange_m, " m", "at most 1000 m"},
                       {"max_range", sweep.max_range_m, kMostMaxRange_m, " m", "a finite number, or 0 for none"},

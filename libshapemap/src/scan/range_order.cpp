@@ -8,8 +8,8 @@ namespace shapemap {
 namespace {
 
 constexpr std::size_t kFewestOfSurfaces = 10;
-constexpr double kFewestInOrder = 0.5;   // of the far readings
-constexpr double kMostScattered = 0.05;  // of all readings may be false ones
+constexpr double kFewestInOrder = 0.5;   // as a share of the far readings
+constexpr double kMostScattered = 0.05;  // as a share of all readings, which may be false ones
 
 }  // namespace
 

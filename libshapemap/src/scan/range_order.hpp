@@ -9,17 +9,17 @@
 
 namespace shapemap {
 
-/// What lies beyond some distance in the sweeps of a sensor, levels of no return left out.
+/// Counts the readings beyond some distance in the sweeps of a sensor, without those on levels of no return.
 struct FarReadings {
   std::size_t num_readings = 0;
-  std::size_t num_in_order = 0;  ///< that continue the reading of a neighbouring beam
-  std::size_t num_all = 0;       ///< of all distances
+  std::size_t num_in_order = 0;  ///< readings that continue that of a neighbouring beam
+  std::size_t num_all = 0;       ///< readings at any distance
 
-  /// Whether they are surfaces, rather than scattered false readings.
+  /// Says whether the readings are surfaces rather than scattered false readings.
   bool are_surfaces() const;
 };
 
-/// Beyond `from_mm` and below `end_mm`.
+/// Counts the readings beyond `from_mm` and below `end_mm`.
 FarReadings readings_beyond(const std::vector<Sweep*>& sweeps, Millimetres from_mm, Millimetres end_mm,
                             const std::vector<LevelExtent>& levels);
 

@@ -10,19 +10,19 @@
 namespace shapemap {
 namespace {
 
-constexpr std::size_t kMostSampled = 400'000;  // readings: a level on 0.1 % of them is still seen 400 times
+constexpr std::size_t kMostSampled = 400'000;  // in readings: a level on 0.1 % of them is still seen 400 times
 constexpr std::size_t kFewestSweeps = 1000;    // so many views are kept even of sensors with a great many beams
 constexpr double kSteepest = 2.0;              // tangent of the angle of incidence that still counts as one surface
-constexpr double kMostOfRange = 0.1;           // the same for widely spaced beams, as a share of the range
+constexpr double kMostOfRange = 0.1;           // as a share of the range, for widely spaced beams
 constexpr double kMostNoise_mm = 300.0;        // four standard deviations of a difference, where readings have 5 cm
 constexpr double kNoisePerBend = 3.5;          // four standard deviations, by the median of second differences
 constexpr std::size_t kFewestBends = 100;
-constexpr std::size_t kMostBridged = 8;  // beams without a reading inside of a fragment
+constexpr std::size_t kMostBridged = 8;  // a segment continues over so many beams without a reading
 
 }  // namespace
 
 Millimetres to_mm(float range_m, const Sweep& sweep) {
-  if (!(range_m > 0.0F && range_m < static_cast<float>(kLongestRange_m))) return 0;  // false for NaN
+  if (!(range_m > 0.0F && range_m < static_cast<float>(kLongestRange_m))) return 0;  // the comparison is false for NaN
   if (range_m < static_cast<float>(sweep.min_range_m)) return 0;
   return static_cast<Millimetres>(range_m * 1000.0F + 0.5F);
 }
@@ -58,7 +58,7 @@ RangeSample::RangeSample(const std::vector<Sweep*>& sweeps) {
   }
   for (const Millimetres range_mm : ranges_mm_) longest_mm_ = std::max(longest_mm_, range_mm);
   estimate_noise();
-  cut_into_fragments();
+  cut_into_segments();
 }
 
 void RangeSample::estimate_noise() {
@@ -83,22 +83,22 @@ void RangeSample::remove(Millimetres from_mm, Millimetres to_mm) {
   for (Millimetres& range_mm : ranges_mm_) {
     if (range_mm >= from_mm && range_mm <= to_mm) range_mm = 0;
   }
-  cut_into_fragments();
+  cut_into_segments();
 }
 
-void RangeSample::cut_into_fragments() {
-  fragments_.clear();
+void RangeSample::cut_into_segments() {
+  segments_.clear();
   for (std::size_t i = 0; i < sweeps_.size(); ++i) {
-    sweeps_[i].first_fragment = fragments_.size();
+    sweeps_[i].first_segment = segments_.size();
     cut(i);
-    sweeps_[i].end_fragment = fragments_.size();
+    sweeps_[i].end_segment = segments_.size();
   }
 }
 
 void RangeSample::cut(std::size_t index) {
   const SampledSweep& sweep = sweeps_[index];
   const Millimetres* readings_mm = readings(sweep);
-  Fragment current;
+  RangeSegment current;
   for (std::size_t beam = 0; beam < sweep.size; ++beam) {
     const Millimetres range_mm = readings_mm[beam];
     if (range_mm == 0) continue;
@@ -113,11 +113,11 @@ void RangeSample::cut(std::size_t index) {
         current.farthest_mm = std::max(current.farthest_mm, range_mm);
         continue;
       }
-      fragments_.push_back(current);
+      segments_.push_back(current);
     }
     current = {index, beam, beam, 1, range_mm, range_mm};
   }
-  if (current.num_readings > 0) fragments_.push_back(current);
+  if (current.num_readings > 0) segments_.push_back(current);
 }
 
 }  // namespace shapemap

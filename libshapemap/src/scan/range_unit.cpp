@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kFarthestMiddle_m = 100.0;
 
-/// What is usual, as the middle of a log-normal distribution and its width: rooms, and the noise of lasers.
+/// The usual range, the nearest range and the roughness are log-normal, each with a median and a factor of spread. The
+/// numbers are those of rooms, and of the noise of lasers.
 constexpr double kUsualRange_m = 5.0;
 constexpr double kRangeFactor = 3.0;
 constexpr double kUsualNearest_m = 0.6;
@@ -20,13 +21,13 @@ constexpr double kNearestFactor = 4.0;
 constexpr double kUsualRoughness_m = 0.0025;
 constexpr double kRoughnessFactor = 2.5;
 
-/// No sensor measures nearer: a smaller limit was in metres.
+/// No sensor measures nearer, so a smaller limit was in metres.
 constexpr double kLeastMinRange_m = 0.01;
 
-/// So many scans, spread over the log, tell.
+/// So many scans, spread over the log, are enough to tell.
 constexpr std::size_t kMostScans = 400;
 
-/// The value that `share` of them are below; 0 when there are none.
+/// Returns the value that `share` of the values are below; 0 when there are none.
 double quantile(std::vector<double>& values, double share) {
   if (values.empty()) return 0.0;
   const auto index = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -37,9 +38,9 @@ double quantile(std::vector<double>& values, double share) {
 bool is_reading(float range) { return std::isfinite(range) && range > 0.0F; }
 
 struct Readings {
-  double middle = 0.0;   ///< of the distances that occur
-  double nearest = 0.0;  ///< of them, but for one of a hundred
-  /// How much the smoothest surfaces deviate from straight, beam by beam; at least half a step of the readings.
+  double middle = 0.0;   ///< median of the distances that occur
+  double nearest = 0.0;  ///< nearest of them, but for one of a hundred
+  /// The deviation of the smoothest surfaces from straight, beam by beam; it is at least half a step of the readings.
   double roughness = 0.0;
 };
 
@@ -59,7 +60,7 @@ Readings readings_of(const Log& log) {
     }
   }
   double step = std::numeric_limits<double>::infinity();
-  // Each distance counts once, so that a code for "no return" does not, however often it stands there.
+  // Each distance counts once, so that a code for "no return" has no weight, however often it occurs.
   std::sort(ranges.begin(), ranges.end());
   ranges.erase(std::unique(ranges.begin(), ranges.end()), ranges.end());
   for (std::size_t i = 1; i < ranges.size(); ++i) step = std::min(step, ranges[i] - ranges[i - 1]);
@@ -72,7 +73,7 @@ double unusual(double value, double usual, double factor) {
   return 0.5 * widths * widths;
 }
 
-/// The log density of a log under a unit, but for what is the same for both.
+/// Returns the log density of a log under a unit, up to a constant that all units share.
 double log_density(const Readings& readings, RangeUnit unit) {
   const double scale = metres_per(unit);
   return -unusual(readings.middle * scale, kUsualRange_m, kRangeFactor) -

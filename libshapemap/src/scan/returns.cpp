@@ -22,7 +22,7 @@ void sort_by_angle(const Sweep& sweep, std::vector<Return>& returns) {
   });
 }
 
-/// Takes readings of one sub-scan to the floor plan, in the robot's frame.
+/// Projects readings of one sweep to the floor plan, in the robot's frame.
 class BeamPoints {
  public:
   explicit BeamPoints(const Sweep& sweep)
@@ -30,7 +30,7 @@ class BeamPoints {
         robot_from_sensor_(rotation_of(sweep.robot_from_sensor)),
         mount_m_(sweep.robot_from_sensor.x_m, sweep.robot_from_sensor.y_m) {}
 
-  /// Cosine of the angle between the sensor's z axis and the robot's.
+  /// Returns the cosine of the angle between the sensor's z axis and the robot's.
   double up() const { return robot_from_sensor_(2, 2); }
 
   Point2 at(std::size_t beam, double range_m) const {

@@ -15,7 +15,7 @@
 namespace shapemap {
 namespace {
 
-/// Buffers swap neighbours, and busy computers stamp a few scans late; more is a clock that was set.
+/// Buffers swap neighbours, and busy computers stamp a few scans late; a larger disorder is a clock that was set.
 constexpr std::ptrdiff_t kMostPlacesSwapped = 3;
 constexpr std::size_t kMostLate = 10;
 
@@ -33,7 +33,7 @@ bool increases(const Times& times_s) {
   return std::adjacent_find(times_s.begin(), times_s.end(), std::greater_equal<>()) == times_s.end();
 }
 
-/// Whether more than half of them are the same.
+/// Says whether more than half of the times are the same.
 bool say_nothing(Times times_s) {
   const auto middle = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() / 2);
   std::nth_element(times_s.begin(), middle, times_s.end());
@@ -41,7 +41,7 @@ bool say_nothing(Times times_s) {
   return 2 * std::count(times_s.begin(), times_s.end(), usual_s) > static_cast<std::ptrdiff_t>(times_s.size());
 }
 
-/// The middle one of the steps that go forward; a second where none does.
+/// Returns the median of the steps that go forward, or one second where none does.
 double usual_step_s(const Times& times_s) {
   Times steps_s;
   for (std::size_t i = 1; i < times_s.size(); ++i) {
@@ -53,7 +53,7 @@ double usual_step_s(const Times& times_s) {
   return *middle;
 }
 
-/// The order by time, where no position moves far; else none.
+/// Returns the order by time, unless a scan would move far.
 std::optional<Order> order_by_time(const Times& times_s) {
   Order order(times_s.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -65,7 +65,7 @@ std::optional<Order> order_by_time(const Times& times_s) {
   return order;
 }
 
-/// How different two scans look: the middle one of the differences of their readings. What hit nothing tells nothing.
+/// Returns how much two scans differ: the median difference of their readings. Beams without a return tell nothing.
 double difference_m(const Scan& a, const Scan& b) {
   if (a.sweeps.empty() || b.sweeps.empty()) return 0.0;
   const std::vector<float>& of_a = a.sweeps.front().ranges_m;
@@ -83,7 +83,7 @@ double difference_m(const Scan& a, const Scan& b) {
   return *middle;
 }
 
-/// Whether the scans change less from one to the next in `order` than in the order of the log. Where times were
+/// Says whether the scans change less from one to the next in `order` than in the order of the log. Where times were
 /// stamped late, the order of the log is right; where scans were swapped, their times are.
 bool is_smoother(const std::vector<Scan>& scans, const Order& order) {
   double as_ordered_m = 0.0;
@@ -100,7 +100,7 @@ bool is_smoother(const std::vector<Scan>& scans, const Order& order) {
   return as_ordered_m < as_recorded_m;
 }
 
-/// Sorts positions by time where that is the order in which they were taken; how many moved.
+/// Sorts scans by time where that is the order in which they were taken, and returns how many moved.
 std::size_t sort_swapped(std::vector<Scan>& scans, Times& times_s) {
   const std::optional<Order> order = order_by_time(times_s);
   if (!order || !is_smoother(scans, *order)) return 0;
@@ -116,10 +116,10 @@ std::size_t sort_swapped(std::vector<Scan>& scans, Times& times_s) {
   return num_moved;
 }
 
-/// Which times make the longest sequence that does not go back.
+/// Says for each time whether it belongs to the longest sequence that does not go back.
 std::vector<bool> in_longest_sequence(const Times& times_s) {
   constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  Order ends;  // of the best sequence of each length, its last element
+  Order ends;  // for each length, the last element of the best sequence
   Order before(times_s.size(), kNone);
   for (std::size_t i = 0; i < times_s.size(); ++i) {
     const auto later = std::upper_bound(ends.begin(), ends.end(), times_s[i],
@@ -136,7 +136,7 @@ std::vector<bool> in_longest_sequence(const Times& times_s) {
   return is_in;
 }
 
-/// A few times that do not fit into the sequence of the others are put between their neighbours; how many.
+/// Puts a few times that do not fit into the sequence of the others between their neighbours, and returns how many.
 std::size_t interpolate_odd_ones(Times& times_s, double step_s) {
   const std::vector<bool> fits = in_longest_sequence(times_s);
   std::size_t count = 0;
@@ -174,7 +174,7 @@ std::size_t move_on_after_set_back(Times& times_s, double step_s) {
   return count;
 }
 
-/// Times that repeat, or differ so little that rounding makes them do so, are spread up to the next.
+/// Spreads times that repeat, or differ so little that rounding makes them do so, up to the next time.
 std::size_t spread_repeated(Times& times_s, double step_s) {
   std::size_t count = 0;
   for (std::size_t first = 0; first < times_s.size();) {

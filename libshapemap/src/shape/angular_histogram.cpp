@@ -28,14 +28,14 @@ AngularHistogram normalised(const std::array<int, kHistogramBins>& counts, Histo
   const double whole = divisor(counts, norm);
   if (whole <= 0.0) return histogram;
   for (std::size_t b = 0; b < kHistogramBins; ++b) {
-    if (counts[b] == 0) continue;                                                              // most of them
-    histogram.bins[b] = static_cast<std::uint8_t>(kHistogramScale * counts[b] / whole + 0.5);  // to the nearest
+    if (counts[b] == 0) continue;                                                              // most bins are empty
+    histogram.bins[b] = static_cast<std::uint8_t>(kHistogramScale * counts[b] / whole + 0.5);  // rounds to the nearest
   }
   return histogram;
 }
 
 NeighbourDirections::NeighbourDirections(const Shape& shape, double radius_m) {
-  // Sweeps over the points by x. Each pair is met once and gives two directions, opposite to each other.
+  // The points are swept by x. Each pair is met once and gives two directions, opposite to each other.
   struct Pair {
     std::uint32_t from;
     std::uint32_t to;
@@ -74,7 +74,7 @@ NeighbourDirections::NeighbourDirections(const Shape& shape, double radius_m) {
 
 std::vector<AngularHistogram> NeighbourDirections::histograms(double rotation_rad, HistogramNorm norm) const {
   constexpr double kBinsPerRad = static_cast<double>(kHistogramBins) / (2.0 * kPi);
-  // Directions lie in [-pi, pi] and the turn in [-pi, pi]: with one period more, bin numbers are 0 to twice the bins.
+  // Directions and the turn lie in [-pi, pi]: with one period more, bin numbers are 0 to twice the number of bins.
   constexpr std::size_t kUnfolded = 2 * kHistogramBins + 1;
   const double turn_rad = wrap_angle(rotation_rad) + 2.0 * kPi;
   const auto bin_of = [&](double direction_rad) {
@@ -82,7 +82,7 @@ std::vector<AngularHistogram> NeighbourDirections::histograms(double rotation_ra
   };
   std::vector<AngularHistogram> result(first_.size() - 1);
   for (std::size_t i = 0; i < result.size(); ++i) {
-    // Neighbours often have like directions. Two counters in turn need not wait for each other.
+    // Neighbours often have like directions. Two counters that take turns need not wait for each other.
     std::array<int, kUnfolded> even{};
     std::array<int, kUnfolded> odd{};
     std::size_t k = first_[i];

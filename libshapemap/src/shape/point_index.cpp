@@ -9,7 +9,7 @@
 namespace shapemap {
 
 namespace {
-constexpr std::size_t kLeafPoints = 16;  // measured: quicker to build and to search than the default of 10
+constexpr std::size_t kLeafPoints = 16;  // measured to be quicker to build and to search than the default of 10
 }  // namespace
 
 struct PointIndex::Tree {
@@ -18,7 +18,7 @@ struct PointIndex::Tree {
     if (!points.empty()) index.buildIndex();
   }
 
-  // What nanoflann asks of a data set.
+  // nanoflann asks a data set for these three functions.
   std::size_t kdtree_get_point_count() const { return points.size(); }
   double kdtree_get_pt(std::size_t i, std::size_t axis) const { return points[i][static_cast<Eigen::Index>(axis)]; }
   template <class Box>
@@ -43,7 +43,7 @@ PointIndex::Neighbour PointIndex::nearest(const Point2& p, double max_distance_m
   double distance2 = 0.0;
   nanoflann::KNNResultSet<double> found(1);
   found.init(&point, &distance2);
-  // The search passes over what is not closer than its worst so far; a point exactly at the distance counts.
+  // The search skips points that are not closer than its worst so far, but a point exactly at the distance counts.
   distance2 = std::nextafter(max_distance_m * max_distance_m, std::numeric_limits<double>::infinity());
   tree_->index.findNeighbors(found, p.data(), nanoflann::SearchParams());
   if (point == tree_->points.size()) return {};
@@ -56,7 +56,7 @@ std::vector<std::size_t> PointIndex::within(const Point2& p, double radius_m) co
   std::vector<std::pair<std::size_t, double>> found;
   nanoflann::SearchParams unsorted;
   unsorted.sorted = false;
-  // nanoflann wants the radius squared, and leaves out what is exactly as far.
+  // nanoflann takes the radius squared, and leaves out points exactly at it.
   const double beyond2 = std::nextafter(radius_m * radius_m, std::numeric_limits<double>::infinity());
   tree_->index.radiusSearch(p.data(), beyond2, found, unsorted);
   neighbours.reserve(found.size());

@@ -13,7 +13,7 @@ namespace {
 using polyline_em::WeightedPoint;
 using polyline_em::WorkingSegment;
 
-/// Farther points than this many sigmas are not explained by a segment.
+/// A segment does not explain points that are farther off than this many sigmas.
 constexpr double kMaxSigmas = 3.0;
 
 std::vector<WorkingSegment> initial_segments(const std::vector<ScanPoint>& points, const PolylineOptions& options) {
@@ -29,14 +29,14 @@ std::vector<WorkingSegment> initial_segments(const std::vector<ScanPoint>& point
   return segments;
 }
 
-/// Probability of each point under each segment, with one share for "none of them".
+/// Computes the probability of each point under each segment, with one share for "none of them".
 std::vector<std::vector<WeightedPoint>> expectation(const std::vector<ScanPoint>& points,
                                                     std::vector<WorkingSegment>& segments, double sigma_m) {
   const double reach_m = kMaxSigmas * sigma_m;
   const double none = std::exp(-0.5 * kMaxSigmas * kMaxSigmas);
   std::vector<std::vector<WeightedPoint>> weighted(segments.size());
   for (WorkingSegment& segment : segments) segment.support.clear();
-  std::vector<std::pair<std::size_t, double>> likely;  // segment, likelihood
+  std::vector<std::pair<std::size_t, double>> likely;  // pairs of segment and likelihood
   for (std::size_t i = 0; i < points.size(); ++i) {
     likely.clear();
     double sum = none;
@@ -124,7 +124,7 @@ PolylineFit fit_polylines(const std::vector<ScanPoint>& points, const PolylineOp
     if (same_supports(segments, before)) break;
     before = segments;
   }
-  if (fit.iterations > 0) {  // before the first, they are in scan order and own no points yet
+  if (fit.iterations > 0) {  // before the first iteration, segments are in scan order and own no points yet
     std::stable_sort(segments.begin(), segments.end(), [](const WorkingSegment& a, const WorkingSegment& b) {
       return a.support.front() < b.support.front();
     });

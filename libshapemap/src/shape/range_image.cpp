@@ -9,34 +9,34 @@
 namespace shapemap {
 namespace {
 
-/// A point farther from its segment than this is not on it: its surface is taken to face the sensor.
+/// A point farther from its segment than this is not on it; its surface is assumed to face the sensor.
 constexpr double kOnSegment_m = 0.10;
 
 /// Beams that graze a surface leave a footprint of at most this many times their width.
 constexpr double kLongestFootprint = 10.0;
 
-/// The bearings of the beams, seen from above: from `first_rad` on, counterclockwise.
-struct LocalizationState {
+/// The bearings of the beams run counterclockwise from `first_rad` on, as seen from above.
+struct Bearings {
   double first_rad = 0.0;
   double step_rad = 0.0;
   std::size_t count = 0;
 };
 
-LocalizationState bearings_of_even_beams(const Sweep& sweep, bool upside_down) {
+Bearings bearings_of_even_beams(const Sweep& sweep, bool upside_down) {
   const double first_rad = sweep.beam_angle_rad(0);
   const double last_rad = sweep.beam_angle_rad(sweep.ranges_m.size() - 1);
   const double lowest_rad = upside_down ? std::min(-first_rad, -last_rad) : std::min(first_rad, last_rad);
   return {wrap_angle(lowest_rad), std::abs(sweep.angle_step_rad), sweep.ranges_m.size()};
 }
 
-/// As many bearings, one typical step apart, as cover all beams; at most a full turn of them.
-LocalizationState bearings_of_uneven_beams(const Sweep& sweep, bool upside_down) {
+/// Returns bearings, one typical step apart, that cover all beams within at most a full turn.
+Bearings bearings_of_uneven_beams(const Sweep& sweep, bool upside_down) {
   const auto [lowest, highest] = std::minmax_element(sweep.beam_angles_rad.begin(), sweep.beam_angles_rad.end());
   const double span_rad = *highest - *lowest;
   const double step_rad = std::abs(sweep.angle_step_rad);
   if (!(step_rad > 0.0)) return {};
   const double in_turn = std::max(1.0, std::round(2.0 * kPi / step_rad));
-  LocalizationState bearings;
+  Bearings bearings;
   bearings.first_rad = wrap_angle(upside_down ? -*highest : *lowest);
   bearings.step_rad = step_rad;
   bearings.count = static_cast<std::size_t>(std::min(in_turn, std::round(span_rad / step_rad) + 1.0));
@@ -47,8 +47,8 @@ LocalizationState bearings_of_uneven_beams(const Sweep& sweep, bool upside_down)
   return bearings;
 }
 
-/// Both sensors' angles run clockwise, seen from above, where the sensor is upside down.
-LocalizationState bearings_of(const Sweep& sweep) {
+/// Seen from above, the angles of both kinds of beams run clockwise where the sensor is upside down.
+Bearings bearings_of(const Sweep& sweep) {
   const bool upside_down = is_upside_down(sweep.robot_from_sensor);
   return sweep.is_evenly_spaced() ? bearings_of_even_beams(sweep, upside_down)
                                   : bearings_of_uneven_beams(sweep, upside_down);
@@ -63,8 +63,9 @@ Point2 normal_at(const SweepShape& shape, std::size_t point, const Point2& to_se
   return {-along.y(), along.x()};  // counterclockwise scans have the sensor to their left
 }
 
-/// Puts hits into the beams of an image. Even beams have at most one hit each. Where uneven beams meet in one bearing,
-/// the hit nearest to its middle stays; a bearing that none falls into takes a hit that is less than a step away.
+/// Puts returns into the beams of an image. Even beams have at most one return each. Where uneven beams meet in one
+/// bearing, the return nearest to its middle stays; a bearing that none falls into takes a return less than a step
+/// away.
 class ImageFilling {
  public:
   ImageFilling(const Sweep& sweep, const SweepShape& shape, const Pose2& robot_from_sensor, RangeImage& image)
@@ -109,7 +110,8 @@ class ImageFilling {
   const SweepShape& shape_;
   const Pose2& robot_from_sensor_;
   RangeImage& image_;
-  std::vector<double> steps_off_;  ///< how far the hit of each bearing is off its middle; empty for even beams
+  /// distance of each bearing's return from its middle, in steps; empty for even beams
+  std::vector<double> steps_off_;
 };
 
 }  // namespace
@@ -119,7 +121,7 @@ int RangeImage::beam_at(double bearing_rad) const {
   const double beams_in_turn = 2.0 * kPi * per_rad;
   double from_first_rad = bearing_rad - first_bearing_rad;
   if (std::abs(from_first_rad) > 2.0 * kPi) from_first_rad = wrap_angle(from_first_rad);
-  double beam = from_first_rad * per_rad + 0.5;  // less than a turn away: once is enough
+  double beam = from_first_rad * per_rad + 0.5;  // the beam is less than a turn away, so adding one turn is enough
   if (beam < 0.0) beam += beams_in_turn;
   if (beam >= beams_in_turn) beam -= beams_in_turn;
   const auto count = static_cast<double>(beams.size());
@@ -133,7 +135,7 @@ RangeImage range_image(const Sweep& sweep, const SweepShape& shape) {
   const Pose2 robot_from_sensor = robot_from_sensor2(sweep);
   image.sensor_from_robot = inverse(robot_from_sensor);
   if (sweep.ranges_m.empty()) return image;
-  const LocalizationState bearings = bearings_of(sweep);
+  const Bearings bearings = bearings_of(sweep);
   image.step_rad = bearings.step_rad;
   if (!(image.step_rad > 0.0)) return image;
   image.first_bearing_rad = bearings.first_rad;

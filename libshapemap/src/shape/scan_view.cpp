@@ -16,7 +16,7 @@ std::size_t tangent_bin(double tangent_rad) {
   return std::min(bin, kTangentBins - 1);
 }
 
-/// Each point counts in its own bin and, less and less, in those beside it.
+/// Each point counts in its own bin and, with falling weight, in those beside it.
 TangentHistogram tangent_histogram(const std::vector<ShapePoint>& points) {
   TangentHistogram histogram{};
   for (const ShapePoint& point : points) {
@@ -29,7 +29,7 @@ TangentHistogram tangent_histogram(const std::vector<ShapePoint>& points) {
   return histogram;
 }
 
-/// The direction that the surfaces run along, all in all; either way.
+/// Returns the mean direction that the surfaces run along, without orientation.
 Point2 main_direction(const std::vector<Point2>& directions) {
   double cos2 = 0.0;
   double sin2 = 0.0;
@@ -65,7 +65,7 @@ double reach_m(const std::vector<RangeImage>& images) {
   return *ninth;
 }
 
-/// Of sectors, wide enough for beams that are lost one by one not to matter.
+/// The share counts sectors, wide enough for single lost beams not to matter.
 double seen_share(const std::vector<ShapePoint>& points, const std::vector<RangeImage>& images) {
   constexpr std::size_t kSectors = 36;
   std::bitset<kSectors> seen;

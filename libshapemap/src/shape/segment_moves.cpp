@@ -118,7 +118,7 @@ std::vector<WorkingSegment> merge_collinear(const std::vector<ScanPoint>& points
     for (std::size_t k = i + 1; k < segments.size() && !merged; ++k) {
       if (!may_be_one_surface(points, segments[i], segments[k], options)) continue;
       WorkingSegment both = joined(points, segments[i], segments[k]);
-      // Each part by itself: a long wall would outvote a door frame.
+      // Each part is judged by itself, since a long wall would outvote a door frame.
       if (rms_to_line_m(points, segments[i].support, both.line) > options.em_sigma_m ||
           rms_to_line_m(points, segments[k].support, both.line) > options.em_sigma_m) {
         continue;

@@ -6,26 +6,27 @@
 
 #include "shapemap/shape/polyline_em.hpp"
 
-/// The steps between E and E of the polyline fit. A segment under work is its line and the points that it owns.
+/// These are the steps between one E and the next of the polyline fit. A segment under work is its line and the points
+/// that it owns.
 namespace shapemap::polyline_em {
 
 struct WorkingSegment {
   LineSegment line;
-  std::vector<std::size_t> support;  ///< indices of the points that belong to it more than to any other, ascending
+  /// ascending indices of the points that belong to it more than to any other segment
+  std::vector<std::size_t> support;
 };
 
-/// A weighted point index.
 struct WeightedPoint {
   std::size_t point = 0;
   double weight = 0.0;
 };
 
-/// The line through weighted points with the least squared orthogonal distances, as long as the projections of
-/// `support` onto it, pointing from the first to the last of them.
+/// Returns the line through weighted points with the least squared orthogonal distances. It spans the projections of
+/// `support` onto it, and points from the first to the last of them.
 LineSegment regress(const std::vector<ScanPoint>& points, const std::vector<WeightedPoint>& weighted,
                     const std::vector<std::size_t>& support);
 
-/// Root mean square orthogonal distance of points to the infinite line.
+/// Returns the root mean square orthogonal distance of points to the infinite line.
 double rms_to_line_m(const std::vector<ScanPoint>& points, const std::vector<std::size_t>& support,
                      const LineSegment& line);
 
@@ -33,11 +34,11 @@ double rms_to_line_m(const std::vector<ScanPoint>& points, const std::vector<std
 std::vector<WorkingSegment> split_at_gaps(const std::vector<ScanPoint>& points, std::vector<WorkingSegment> segments,
                                           const PolylineOptions& options);
 
-/// Joins pairs that are nearly collinear, close end to end and jointly well supported, until there are none.
+/// Joins pairs that are nearly collinear, close end to end and well supported together, until there are none.
 std::vector<WorkingSegment> merge_collinear(const std::vector<ScanPoint>& points, std::vector<WorkingSegment> segments,
                                             const PolylineOptions& options);
 
-/// Largest distance at which two points may be neighbours on one surface.
+/// Returns the largest distance at which two points may be neighbours on one surface.
 double surface_gap_m(const ScanPoint& a, const ScanPoint& b, const PolylineOptions& options);
 
 }  // namespace shapemap::polyline_em

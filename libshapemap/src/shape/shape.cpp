@@ -6,7 +6,8 @@
 namespace shapemap {
 namespace {
 
-/// Points every `spacing_m` of arc length, the first half a spacing from the start; a short segment gives its middle.
+/// Puts points at every `spacing_m` of arc length, the first half a spacing from the start; a short segment gives its
+/// middle.
 void resample(const LineSegment& segment, int sweep, double spacing_m, std::vector<ShapePoint>& points) {
   const double length_m = segment.length_m();
   const auto count = std::max(1L, std::lround(length_m / spacing_m));
@@ -17,8 +18,8 @@ void resample(const LineSegment& segment, int sweep, double spacing_m, std::vect
   }
 }
 
-/// Keeps every second, third, ... point, so that at most `max_points` are left: fitting and matching take memory and
-/// time that grow with the square of their number.
+/// Keeps every second, third, ... point, so that at most `max_points` are left: the memory and time of fitting and
+/// matching grow with the square of their number.
 template <class Point>
 void thin_out(std::vector<Point>& points, std::size_t max_points) {
   if (points.size() <= max_points) return;

@@ -20,15 +20,15 @@ namespace simplification = CGAL::Polyline_simplification_2;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Vertices = std::vector<Kernel::Point_2>;
 
-// A line that crosses itself is refused: computing the crossings with rounding can recurse without end.
+// CGAL refuses a line that crosses itself here, since computing the crossings with rounding can recurse without end.
 using Triangulation = CGAL::Constrained_triangulation_plus_2<CGAL::Constrained_Delaunay_triangulation_2<
     Kernel,
     CGAL::Triangulation_data_structure_2<simplification::Vertex_base_2<Kernel>,
                                          CGAL::Constrained_triangulation_face_base_2<Kernel>>,
     CGAL::No_constraint_intersection_requiring_constructions_tag>>;
 
-/// The vertices that CGAL keeps, in order; nothing when the line crosses or touches itself: CGAL's own lists break
-/// where it runs over one of its vertices again.
+/// Returns the vertices that CGAL keeps, in order, or nothing when the line crosses or touches itself: CGAL's own lists
+/// break where a line runs over one of its vertices again.
 std::optional<Vertices> simplified(const Vertices& vertices, double tolerance_m) {
   try {
     Triangulation triangulation;
@@ -71,7 +71,7 @@ std::vector<std::size_t> simplify_polyline(const std::vector<Point2>& points, do
     index_of_vertex.push_back(i);
   }
 
-  // CGAL gives points, in order and unchanged: walk both lists to get the indices back.
+  // CGAL returns points, in order and unchanged, so walking both lists recovers the indices.
   std::size_t from = 0;
   for (const Kernel::Point_2& point : simplified_in_parts(vertices, tolerance_m)) {
     const auto found = std::find(vertices.begin() + static_cast<std::ptrdiff_t>(from), vertices.end(), point);

@@ -34,7 +34,7 @@ struct SampleOptions {
   }
 };
 
-/// What validate() says of the options after `change`; "" when it accepts them.
+/// Returns what validate() complains of after `change`; "" when it accepts the options.
 std::string complaint(const std::function<void(SampleOptions&)>& change) {
   SampleOptions options;
   change(options);
@@ -111,7 +111,7 @@ TEST(EnumNames, AnUnknownOneIsToldTheSpellingsThatExist) {
 TEST(MappingOptions, DefaultsAreWithinTheirLimits) { EXPECT_NO_THROW(validate_all(MappingOptions{})); }
 
 TEST(MappingOptions, EveryNumberHasLimitsThatAreEnforcedOnBothSides) {
-  // For each field: the same options with only that field beyond a limit.
+  // For each field, the same options are tried with only that field beyond a limit.
   int num_numbers = 0;
   MappingOptions options;
   MappingOptions::groups(options, [&](const char*, auto& group) {

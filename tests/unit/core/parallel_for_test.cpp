@@ -57,7 +57,7 @@ TEST(ParallelFor, WithOneThreadWorksInOrderOnTheCallingThread) {
   EXPECT_EQ(order, (std::vector<std::size_t>{0, 1, 2, 3, 4}));
 }
 
-/// While it lives, no thread can be started: none has so much room for its stack.
+/// While it lives, no thread can be started, since none has so much room for its stack.
 class NoMoreThreads {
  public:
   NoMoreThreads() {

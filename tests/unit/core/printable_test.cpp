@@ -26,18 +26,18 @@ TEST(Printable, EscapesWhatATerminalObeys) {
   EXPECT_EQ(printable(std::string_view("a\0b", 3)), "a\\x00b");
   EXPECT_EQ(printable("\xC2\x9B"
                       "31m"),
-            "\\xc2\\x9b31m");                               // C1: an escape sequence begins
+            "\\xc2\\x9b31m");                               // C1 begins an escape sequence
   EXPECT_EQ(printable("\xE2\x80\xAE"), "\\xe2\\x80\\xae");  // writes from right to left
-  EXPECT_EQ(printable("\xE2\x80\xA8"), "\\xe2\\x80\\xa8");  // a separator of lines
+  EXPECT_EQ(printable("\xE2\x80\xA8"), "\\xe2\\x80\\xa8");  // separates lines
   EXPECT_EQ(printable("\xEF\xBB\xBF"), "\\xef\\xbb\\xbf");
 }
 
 TEST(Printable, EscapesBytesThatAreNoUtf8) {
   EXPECT_EQ(printable("a\x9Bz"), "a\\x9bz");
   EXPECT_EQ(printable("\xC0\x9B"), "\\xc0\\x9b");                    // longer than needed
-  EXPECT_EQ(printable("\xE0\x80\x9B"), "\\xe0\\x80\\x9b");           // the same
+  EXPECT_EQ(printable("\xE0\x80\x9B"), "\\xe0\\x80\\x9b");           // longer than needed, too
   EXPECT_EQ(printable("\xED\xA0\x80"), "\\xed\\xa0\\x80");           // half of a UTF-16 character
-  EXPECT_EQ(printable("\xF4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond the last
+  EXPECT_EQ(printable("\xF4\x90\x80\x80"), "\\xf4\\x90\\x80\\x80");  // beyond the last character
   EXPECT_EQ(printable("\xE6\xBF"), "\\xe6\\xbf");                    // cut off
   EXPECT_EQ(printable("\xE6(\x80"), "\\xe6(\\x80");
 }
@@ -50,7 +50,7 @@ TEST(Printable, CutsTheMiddleOfWhatIsLong) {
   EXPECT_THAT(shown, HasSubstr("- ... -"));
   EXPECT_LE(shown.size(), 105U);
   EXPECT_EQ(printable(std::string(100, 'x'), 100), std::string(100, 'x'));
-  // Never within a character.
+  // The cut never falls within a character.
   for (std::size_t most = 3; most < 40; ++most) {
     std::string accents;
     for (int i = 0; i < 200; ++i) accents += "\xC3\xA9";

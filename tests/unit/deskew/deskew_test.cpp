@@ -39,7 +39,9 @@ struct Listener : RunObserver {
 Straightened straightened_log(const Log& log, const DeskewOptions& options = {}, int threads = 1) {
   Listener listener;
   Straightened result;
-  result.log = straightened(log, {}, options, 1, threads, listener, result.verdicts);
+  StraightenedLog straight = straightened(log, {}, options, 1, {threads, listener});
+  result.log = std::move(straight.log);
+  result.verdicts = std::move(straight.verdicts);
   result.warnings = listener.warnings;
   return result;
 }
@@ -242,8 +244,7 @@ TEST(Deskew, EndsWhenAskedTo) {
   const Log log = test::bent_log(test::cluttered_room(5), test::swinging(30 * kDegree, 0.2), kSweeps, noisy());
   Listener listener;
   listener.stops = true;
-  std::vector<SweepVerdict> verdicts;
-  EXPECT_THROW(straightened(log, {}, {}, 1, 1, listener, verdicts), Interrupted);
+  EXPECT_THROW(straightened(log, {}, {}, 1, {1, listener}), Interrupted);
 }
 
 TEST(Deskew, AnEmptyLogAndScansWithoutReturnsAreNoTrouble) {
@@ -256,7 +257,7 @@ TEST(Deskew, AnEmptyLogAndScansWithoutReturnsAreNoTrouble) {
   EXPECT_EQ(straightened_log(log, on).log.scans.size(), 12U);
 }
 
-/// Any scans go together if each is bent to a line: by a motion against its beams.
+/// Any scans match if a motion against their beams bends each of them to a line.
 TEST(Deskew, ScansOfPlacesFarApartAreNoSweeps) {
   const test::World world = test::cluttered_room(5);
   std::mt19937 rng(3);
@@ -281,8 +282,7 @@ TEST(Deskew, AThinnedRecordingIsJudgedByTheTurnsOfItsLaser) {
   for (std::size_t i = 0; i < thinned.scans.size(); i += 2) kept.push_back(thinned.scans[i]);
   thinned.scans = kept;
   Listener listener;
-  std::vector<SweepVerdict> verdicts;
-  const Log straight = straightened(thinned, {}, {}, 2, 1, listener, verdicts);
+  const auto [straight, verdicts] = straightened(thinned, {}, {}, 2, {1, listener});
   ASSERT_TRUE(verdicts[0].straightened);
   EXPECT_NEAR(verdicts[0].sweep_time_s, 0.1, 1e-9);
   EXPECT_LT(test::off_the_walls_m(straight, world), 0.5 * test::off_the_walls_m(thinned, world));
@@ -330,7 +330,7 @@ TEST(ChanceOfGains, IsThatOfTheTablesOfTheSignedRankTest) {
   EXPECT_NEAR(chance_of_gains({-1.0, 2.0, 3.0}), 2.0 / 8.0, 1e-12);
   EXPECT_NEAR(chance_of_gains({1.0, 2.0, -3.0}), 5.0 / 8.0, 1e-12);
   EXPECT_NEAR(chance_of_gains({0.0, 1.0, 1.0, -1.0}), 4.0 / 8.0, 1e-12);
-  // Of ten, a sum of losses of at most 8 has the chance 0.0244.
+  // For ten values, a sum of losses of at most 8 has the probability 0.0244.
   EXPECT_NEAR(chance_of_gains({1, 2, 3, 4, 5, 6, 7, -8, 9, 10}), 0.0244, 1e-4);
 }
 

@@ -14,9 +14,9 @@ namespace {
 
 using test::RollingLaser;
 
-constexpr double kRounding_m = 1e-5;  // of ranges as floats
+constexpr double kRounding_m = 1e-5;  // ranges are floats
 
-/// By the exact motion.
+/// Unbends all sweeps by the exact motion.
 void unbend(Log& log, const test::Motion& world_from_laser, const RollingLaser& laser) {
   for (Scan& scan : log.scans) {
     const double start_s = scan.timestamp_s;
@@ -51,7 +51,7 @@ TEST(Unbent, AMountedAndUpsideDownLaserSeesTheSame) {
       world, [&](double time_s) { return robot(time_s) * robot_from_sensor; }, 6, laser);
   for (Scan& scan : log.scans) {
     Sweep& sweep = scan.sweeps[0];
-    // What runs counterclockwise above runs clockwise for a laser that hangs from the ceiling.
+    // A sweep that runs counterclockwise seen from above runs clockwise for a laser that hangs from the ceiling.
     sweep.first_angle_rad = -sweep.first_angle_rad;
     sweep.angle_step_rad = -sweep.angle_step_rad;
     sweep.robot_from_sensor = {0.3, -0.2, 0.0, 1.1, 0.0, kPi};
@@ -87,7 +87,7 @@ TEST(Unbent, BeamsAreSortedAndThoseWithoutReturnTurned) {
   sweep.max_range_m = 10.0;
   sweep.ranges_m = {0.5F, std::numeric_limits<float>::quiet_NaN(), 10.0F, 3.0F};
   sweep.intensities = {1.0F, 2.0F, 3.0F, 4.0F};
-  // Sideways by a metre at the first beam: what is near there is seen in quite another direction.
+  // The first beam is sent a metre to the side, so that near points are seen in quite another direction.
   const Sweep straight = unbent(sweep, {}, [](std::size_t beam) {
     return beam == 0 ? Pose2{0.0, 1.0, 0.0} : Pose2{0.0, 0.0, 0.01 * static_cast<double>(beam)};
   });

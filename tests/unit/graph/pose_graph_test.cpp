@@ -88,7 +88,7 @@ TEST(SolvePoseGraph, FindsWhatDenseGaussNewtonFinds) {
   std::mt19937 rng(1);
   for (int round = 0; round < 12; ++round) {
     const std::vector<Pose2> truth = test::random_walk(rng, 3 + static_cast<std::size_t>(round) % 6);
-    std::vector<PoseConstraint> constraints = test::chain_with_loops(truth, truth.size(), 0.06, rng);
+    std::vector<PoseConstraint> constraints = test::odometry_and_loops(truth, truth.size(), 0.06, rng);
     if (round % 2 == 1) {
       for (PoseConstraint& constraint : constraints) constraint.loss_scale = 1.5;
     }
@@ -108,7 +108,7 @@ TEST(SolvePoseGraph, RecoversAConsistentGraphExactly) {
   std::mt19937 rng(2);
   for (int round = 0; round < 20; ++round) {
     const std::vector<Pose2> truth = test::random_walk(rng, 30);
-    const std::vector<PoseConstraint> constraints = test::chain_with_loops(truth, 10, 0.0, rng);
+    const std::vector<PoseConstraint> constraints = test::odometry_and_loops(truth, 10, 0.0, rng);
     std::vector<Pose2> start = truth;
     for (std::size_t node = 1; node < start.size(); ++node) {
       start[node] = start[node] * test::random_pose(rng, 0.2, 0.1);
@@ -146,7 +146,7 @@ TEST(SolvePoseGraph, KeepsTheFirstNodeOfEachPartAndAllThatNothingHolds) {
 TEST(SolvePoseGraph, CauchysLossCapsWhatAnOutlierDoes) {
   std::mt19937 rng(4);
   const std::vector<Pose2> truth = test::random_walk(rng, 20);
-  std::vector<PoseConstraint> constraints = test::chain_with_loops(truth, 15, 0.01, rng);
+  std::vector<PoseConstraint> constraints = test::odometry_and_loops(truth, 15, 0.01, rng);
   PoseConstraint outlier = test::measured(truth, 2, 17, 0.0, rng);
   outlier.a_from_b = outlier.a_from_b * Pose2{4.0, -3.0, 0.8};
   constraints.push_back(outlier);
@@ -192,7 +192,7 @@ TEST(SolvePoseGraph, TheWorseMeasuredGivesWay) {
 TEST(SolvePoseGraph, GivesTheSameBitsTwice) {
   std::mt19937 rng(6);
   const std::vector<Pose2> truth = test::random_walk(rng, 200);
-  const std::vector<PoseConstraint> constraints = test::chain_with_loops(truth, 60, 0.03, rng);
+  const std::vector<PoseConstraint> constraints = test::odometry_and_loops(truth, 60, 0.03, rng);
   const std::vector<Pose2> start = test::dead_reckoning(constraints, truth.size(), truth[0]);
   const PoseGraphSolution one = solve_pose_graph(start, constraints);
   const PoseGraphSolution two = solve_pose_graph(start, constraints);

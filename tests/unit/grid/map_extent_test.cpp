@@ -7,7 +7,7 @@
 #include "shapemap/grid/occupancy_grid.hpp"
 #include "support/placed_world.hpp"
 
-/// Which returns are inside of a picture, and which are not.
+/// These tests tell which returns a picture shows, and which not.
 namespace shapemap {
 namespace {
 
@@ -27,7 +27,7 @@ OccupancyGrid drawn(const PlacedLog& walk, bool draw_all = false) {
 double width_m(const OccupancyGrid& map) { return map.width_cells * map.resolution_m; }
 double height_m(const OccupancyGrid& map) { return map.height_cells * map.resolution_m; }
 
-/// Lasers whose log does not say a maximum.
+/// The log of these lasers states no maximum range.
 Scanner far_scanner(int num_beams = 180) {
   Scanner scanner;
   scanner.num_beams = num_beams;
@@ -46,7 +46,7 @@ World box_room(double half_x_m, double half_y_m) {
 }
 
 PlacedLog office_walk(int num_scans) {
-  return walk_through(test::cluttered_room(3), {-0.8, 0.0, 0.3}, {0.8, 0.1}, num_scans, far_scanner());
+  return walk_through(test::cluttered_room(3), {{-0.8, 0.0, 0.3}, {0.8, 0.1}, num_scans}, far_scanner());
 }
 
 void expect_whole(const PlacedLog& walk) {
@@ -77,7 +77,7 @@ TEST(MapExtent, OneFalseReadingMakesNoPictureOf18000Pixels) {
 }
 
 TEST(MapExtent, ABeamThatEndsOutsideClearsUpToTheRim) {
-  PlacedLog walk = walk_through(box_room(5.0, 4.0), {-2.05, 0.05, 0.0}, {1.95, 0.05}, 9, far_scanner());
+  PlacedLog walk = walk_through(box_room(5.0, 4.0), {{-2.05, 0.05, 0.0}, {1.95, 0.05}, 9}, far_scanner());
   for (std::size_t i = 0; i < 9; ++i) {
     if (i != 4) reading(walk, i, 90) = std::numeric_limits<float>::quiet_NaN();
   }
@@ -107,7 +107,7 @@ TEST(MapExtent, FalseReadingsInEachScanAreLeftOutWhereverTheyEnd) {
   }
 }
 
-TEST(MapExtent, ASinglePositionIsDrawnWithAllThatItSaw) {
+TEST(MapExtent, ASingleScanIsDrawnWithAllThatItSaw) {
   PlacedLog one = office_walk(1);
   expect_whole(one);
   reading(one, 0, 31) = 80.0F;
@@ -120,19 +120,14 @@ TEST(MapExtent, AFewBeamsThroughAWindowAreLeftOutAndAHallBehindADoorIsNot) {
   window.push_back({{5.0, 0.15}, {5.0, 4.0}});
   World hall = window;
   window.push_back({{120.0, -40.0}, {120.0, 40.0}});
-  const OccupancyGrid small = drawn(walk_through(window, {-3.0, 2.0, 0.0},
-                                                 {
-                                                     -1.0,
-                                                     0.5,
-                                                 },
-                                                 12, far_scanner()));
+  const OccupancyGrid small = drawn(walk_through(window, {{-3.0, 2.0, 0.0}, {-1.0, 0.5}, 12}, far_scanner()));
   EXPECT_LT(width_m(small), 15.0);
   EXPECT_GT(small.num_outside, 0U);
   EXPECT_LT(small.num_outside, small.num_returns / 20);
   add_box(hall, {17.1, 0.0, 0.0}, 12.0, 10.0);
   hall[hall.size() - 1] = {{5.1, 10.0}, {5.1, 0.15}};  // open towards the room
   hall.push_back({{5.1, -0.15}, {5.1, -10.0}});
-  expect_whole(walk_through(hall, {-3.0, 2.0, 0.0}, {4.5, 0.0}, 12, far_scanner(360)));
+  expect_whole(walk_through(hall, {{-3.0, 2.0, 0.0}, {4.5, 0.0}, 12}, far_scanner(360)));
 }
 
 TEST(MapExtent, OfALongCorridorNothingIsCutOff) {
@@ -140,16 +135,16 @@ TEST(MapExtent, OfALongCorridorNothingIsCutOff) {
     World corridor;
     add_box(corridor, {rotate({38.0, 0.0}, turn_rad).x(), rotate({38.0, 0.0}, turn_rad).y(), turn_rad}, 40.0, 1.0);
     const Point2 last_m = rotate({3.0, 0.2}, turn_rad);
-    expect_whole(walk_through(corridor, {0.0, 0.0, turn_rad}, last_m, 10, far_scanner(360)));
+    expect_whole(walk_through(corridor, {{0.0, 0.0, turn_rad}, last_m, 10}, far_scanner(360)));
   }
 }
 
 TEST(MapExtent, TwoRoomsFarApartAreBothDrawn) {
   World world = box_room(4.0, 3.0);
   add_box(world, {300.0, 120.0, 0.4}, 4.0, 3.0);
-  PlacedLog walk = walk_through(world, {-1.0, 0.0, 0.0}, {1.0, 0.0}, 30, far_scanner());
+  PlacedLog walk = walk_through(world, {{-1.0, 0.0, 0.0}, {1.0, 0.0}, 30}, far_scanner());
   std::mt19937 rng(1);
-  add_walk(walk, world, {300.0, 120.0, 0.0}, {301.0, 120.0}, 3, far_scanner(), rng);
+  add_walk(walk, world, {{300.0, 120.0, 0.0}, {301.0, 120.0}, 3}, far_scanner(), rng);
   expect_whole(walk);
 }
 
@@ -160,15 +155,15 @@ TEST(MapExtent, OfSparseScansOutdoorsNothingIsCutOff) {
   for (int i = 0; i < 60; ++i) add_box(trees, {100.0 + 4.0 * place(rng), place(rng), 0.0}, 0.2, 0.2);
   Scanner scanner = far_scanner(90);
   scanner.max_range_m = 40.0;
-  expect_whole(walk_through(trees, {0.0, 0.0, 0.0}, {200.0, 0.0}, 60, scanner));
-  expect_whole(walk_through(trees, {0.0, 0.0, 0.0}, {200.0, 0.0}, 4, scanner));
+  expect_whole(walk_through(trees, {{0.0, 0.0, 0.0}, {200.0, 0.0}, 60}, scanner));
+  expect_whole(walk_through(trees, {{0.0, 0.0, 0.0}, {200.0, 0.0}, 4}, scanner));
 }
 
 TEST(MapExtent, ANoisySensorKeepsItsRoom) {
   Scanner scanner = far_scanner();
   scanner.noise_m = 0.3;
-  expect_whole(walk_through(box_room(5.0, 4.0), {-2.0, 0.0, 0.0}, {2.0, 0.0}, 20, scanner));
-  PlacedLog spoilt = walk_through(box_room(5.0, 4.0), {-2.0, 0.0, 0.0}, {2.0, 0.0}, 50, scanner);
+  expect_whole(walk_through(box_room(5.0, 4.0), {{-2.0, 0.0, 0.0}, {2.0, 0.0}, 20}, scanner));
+  PlacedLog spoilt = walk_through(box_room(5.0, 4.0), {{-2.0, 0.0, 0.0}, {2.0, 0.0}, 50}, scanner);
   std::mt19937 rng(2);
   std::uniform_real_distribution<float> anywhere_m(0.2F, 200.0F);
   for (std::size_t i = 0; i < 50; ++i) reading(spoilt, i, 3 * i) = anywhere_m(rng);
@@ -176,7 +171,7 @@ TEST(MapExtent, ANoisySensorKeepsItsRoom) {
 }
 
 TEST(MapExtent, AStraightWayHasAnExtent) {
-  PlacedLog walk = walk_through(box_room(5.0, 4.0), {-4.0, 0.0, 0.0}, {4.0, 0.0}, 20, far_scanner(3));
+  PlacedLog walk = walk_through(box_room(5.0, 4.0), {{-4.0, 0.0, 0.0}, {4.0, 0.0}, 20}, far_scanner(3));
   expect_whole(walk);
 }
 

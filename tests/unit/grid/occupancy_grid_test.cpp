@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A laser in the middle of the robot that looks forward with three beams: 90 deg right, ahead, 90 deg left.
+/// Makes a laser in the middle of the robot that looks forward with three beams: 90 deg right, ahead, 90 deg left.
 Sweep three_beams(float right_m, float ahead_m, float left_m) {
   Sweep sweep;
   sweep.ranges_m = {right_m, ahead_m, left_m};
@@ -81,7 +81,7 @@ TEST(OccupancyGrid, ReadingsThatHitNothingAddNothing) {
   }
 }
 
-TEST(OccupancyGrid, SubScansStandWhereTheirCorrectionsPutThem) {
+TEST(OccupancyGrid, SweepsStandWhereTheirCorrectionsPutThem) {
   Log log = log_of(three_beams(NAN, 2.0F, NAN));
   log.scans[0].sweeps.push_back(three_beams(NAN, 2.0F, NAN));
   log.scans[0].sweeps[1].nominal_heading_rad = kPi / 2;
@@ -89,7 +89,7 @@ TEST(OccupancyGrid, SubScansStandWhereTheirCorrectionsPutThem) {
   place.robot_from_sweep = {Pose2{}, Pose2{0.0, 0.5, 0.0}};
   const OccupancyGrid map = build_occupancy_grid(log, {place}, ReturnOptions{}, OccupancyGridOptions{0.1});
   EXPECT_LT(grey_at(map, 1.05, 3.05), 60);   // ahead of a robot that faces north
-  EXPECT_LT(grey_at(map, -1.45, 1.05), 60);  // the second looks west, from half a metre to the robot's left
+  EXPECT_LT(grey_at(map, -1.45, 1.05), 60);  // the second sweep looks west, from half a metre to the robot's left
 }
 
 TEST(OccupancyGrid, ATiltedLaserIsProjectedAndABeyondLimitOneLeftOut) {
@@ -140,7 +140,7 @@ TEST(OccupancyGrid, WithoutAPoseThereIsNoMap) {
                OutputError);
 }
 
-/// Looks ahead along x: what others saw up to 2 m, and one that contradicts them.
+/// All scans look ahead along x: two see free space up to 2 m, and one contradicts them.
 struct Disputed {
   Disputed() {
     log.scans.push_back({1.0, {three_beams(1.0F, 2.0F, 1.0F)}, std::nullopt, std::nullopt});
@@ -160,7 +160,7 @@ TEST(OccupancyGrid, WithoutContradictionsTheyAreDrawnAlike) {
   EXPECT_EQ(disputed.map(Contradicting::kFillGaps).grey, disputed.map(Contradicting::kAsOthers).grey);
 }
 
-TEST(OccupancyGrid, WhatContradictsDrawsNothingWhereOthersLookedAndNothingBehindTheirWalls) {
+TEST(OccupancyGrid, WhatContradictsDrawsNothingInFreeSpaceOfOthersAndNothingBehindTheirWalls) {
   Disputed disputed;
   const OccupancyGrid as_others = disputed.map(Contradicting::kAsOthers);
   disputed.placed[2].consistency.contradicts_map = true;
@@ -173,7 +173,7 @@ TEST(OccupancyGrid, WhatContradictsDrawsNothingWhereOthersLookedAndNothingBehind
   EXPECT_LT(grey_at(as_others, 3.05, 0.05), kUnknownLow);
 }
 
-TEST(OccupancyGrid, WhatContradictsDrawsWhereNobodyElseLooked) {
+TEST(OccupancyGrid, WhatContradictsDrawsWhereNoOtherScanSees) {
   Disputed disputed;
   disputed.placed = {placed_at({0.05, 0.05, 0.0}, 0), placed_at({0.05, 0.05, kPi}, 1)};
   disputed.placed[1].consistency.contradicts_map = true;

@@ -8,10 +8,10 @@
 namespace shapemap {
 namespace {
 
-constexpr Rectangle kPositions{-3, 3, -2, 2};
+constexpr Rectangle kScans{-3, 3, -2, 2};
 constexpr double kSoftening = 8.0;
 
-/// The outline of a rectangle, each cell of which is a surface.
+/// Returns the outline of a rectangle, each cell of which is a surface.
 std::vector<KnownCell> outline(const Rectangle& of) {
   std::vector<KnownCell> cells;
   for (std::int64_t x = of.left; x <= of.right; ++x)
@@ -21,14 +21,12 @@ std::vector<KnownCell> outline(const Rectangle& of) {
   return cells;
 }
 
-std::optional<Rectangle> best(const std::vector<KnownCell>& cells) {
-  return best_rectangle(cells, kPositions, kSoftening);
-}
+std::optional<Rectangle> best(const std::vector<KnownCell>& cells) { return best_rectangle(cells, kScans, kSoftening); }
 
 TEST(RectangleChoice, HoldsAllWhereAllIsWorthItsSize) {
   EXPECT_FALSE(best(outline({-20, 25, -10, 12})));
   EXPECT_FALSE(best({}));
-  EXPECT_FALSE(best({{{0, 0}, 1}})) << "between the positions";
+  EXPECT_FALSE(best({{{0, 0}, 1}})) << "between the scans";
 }
 
 TEST(RectangleChoice, LeavesOutWhatIsFarAndLittleOnAllSidesAtOnce) {

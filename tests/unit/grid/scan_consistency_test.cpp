@@ -16,7 +16,7 @@
 namespace shapemap {
 namespace {
 
-/// Scans of a world, and where the map has them.
+/// Scans of a world, and their poses in the map.
 struct Mapped {
   Log log;
   std::vector<PlacedScan> placed;
@@ -26,12 +26,12 @@ struct Mapped {
     placed.push_back({placed.size(), 0.0, pose, {Pose2{}}});
   }
   std::vector<float>& ranges(std::size_t i) { return log.scans.at(i).sweeps.at(0).ranges_m; }
-  std::vector<ScanConsistency> agreements(const ConsistencyOptions& options = {}) const {
+  std::vector<ScanConsistency> consistencies(const ConsistencyOptions& options = {}) const {
     return scan_consistencies(log, placed, ReturnOptions{}, options);
   }
   std::vector<std::size_t> contradicting(const ConsistencyOptions& options = {}) const {
     std::vector<std::size_t> found;
-    const std::vector<ScanConsistency> all = agreements(options);
+    const std::vector<ScanConsistency> all = consistencies(options);
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (all[i].contradicts_map) found.push_back(i);
     }
@@ -47,7 +47,7 @@ test::Scanner laser() {
   return scanner;
 }
 
-/// A lap and a half of a corridor that runs round in a ring.
+/// Scans a lap and a half of a corridor that runs round in a ring.
 Mapped ring(unsigned seed, std::size_t count = 75) {
   const test::World world = test::ring_world(seed);
   std::mt19937 rng(seed);
@@ -62,7 +62,7 @@ TEST(ScanConsistency, NoScanOfARightMapContradictsIt) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     const Mapped mapped = ring(seed);
     EXPECT_EQ(mapped.contradicting(), Indices{}) << seed;
-    for (const ScanConsistency& one : mapped.agreements()) {
+    for (const ScanConsistency& one : mapped.consistencies()) {
       EXPECT_GT(one.agree, 0.8);
       EXPECT_LE(one.known(), 1.0 + 1e-12);
     }
@@ -87,7 +87,7 @@ TEST(ScanConsistency, OneThatIsMovedOffItsPlaceDoesAndNoOther) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     Mapped mapped = ring(seed);
     const std::size_t moved = 10 + 5 * seed;
-    // Across the corridor: along it the walls stay walls.
+    // The scan is moved across the corridor, since along it the walls stay walls.
     PlacedScan& place = mapped.placed[moved];
     const Pose2 ahead = test::on_ring(test::kRingStep_m * static_cast<double>(moved));
     const Point2 across = rotate({0.0, seed % 2 == 0 ? 1.0 : -1.0}, ahead.theta_rad);
@@ -110,15 +110,15 @@ TEST(ScanConsistency, ItDoesNotMatterHowTheMapLies) {
   }
 }
 
-/// Every beam of `from` to `to` that is longer ends after `range_m`, as on the floor.
+/// Makes every longer beam of `from` to `to` end after `range_m`, as on the floor.
 void cut_short(std::vector<float>& ranges, std::size_t from, std::size_t to, float range_m) {
   for (std::size_t b = from; b < to; ++b) ranges[b] = std::min(ranges[b], range_m);
 }
 
-TEST(ScanConsistency, BeamsThatEndWhereOthersLookedThroughAreInFree) {
+TEST(ScanConsistency, BeamsThatEndInFreeSpaceOfOthersAreInFree) {
   Mapped mapped = ring(5);
   cut_short(mapped.ranges(30), 0, 271, 0.7F);
-  const ScanConsistency one = mapped.agreements()[30];
+  const ScanConsistency one = mapped.consistencies()[30];
   EXPECT_TRUE(one.contradicts_map);
   EXPECT_GT(one.in_free, 0.5);
   EXPECT_LT(one.through, 0.05);
@@ -128,7 +128,7 @@ TEST(ScanConsistency, BeamsThatEndWhereOthersLookedThroughAreInFree) {
 TEST(ScanConsistency, BeamsThatGoOnBehindWallsAreThrough) {
   Mapped mapped = ring(6);
   for (std::size_t b = 60; b < 210; ++b) mapped.ranges(30)[b] += 1.5F;
-  const ScanConsistency one = mapped.agreements()[30];
+  const ScanConsistency one = mapped.consistencies()[30];
   EXPECT_TRUE(one.contradicts_map);
   EXPECT_GT(one.through, 0.3);
   EXPECT_LT(one.in_free, 0.15);
@@ -138,23 +138,23 @@ TEST(ScanConsistency, BeamsThatGoOnBehindWallsAreThrough) {
 TEST(ScanConsistency, AFewBeamsThatMeetAPersonAreNoContradiction) {
   Mapped mapped = ring(7);
   cut_short(mapped.ranges(30), 120, 150, 0.6F);
-  const ScanConsistency one = mapped.agreements()[30];
+  const ScanConsistency one = mapped.consistencies()[30];
   EXPECT_GT(one.in_free, 0.07);
   EXPECT_FALSE(one.contradicts_map);
   ConsistencyOptions strict;
   strict.contradicting_share = 0.05;
-  EXPECT_TRUE(mapped.agreements(strict)[30].contradicts_map);
+  EXPECT_TRUE(mapped.consistencies(strict)[30].contradicts_map);
 }
 
-TEST(ScanConsistency, WallsThatOthersLookedThroughTooAreNoWalls) {
+TEST(ScanConsistency, WallsThatOthersSeeThroughAreNoWalls) {
   Mapped alone = ring(6);
   for (float& range_m : alone.ranges(30)) range_m += 1.5F;
   Mapped glass = ring(6);
   for (std::size_t i = 0; i < glass.log.scans.size(); i += 2) {
     for (float& range_m : glass.ranges(i)) range_m += 1.5F;
   }
-  EXPECT_GT(alone.agreements()[30].through, 0.5);
-  EXPECT_LT(glass.agreements()[30].through, 0.15);
+  EXPECT_GT(alone.consistencies()[30].through, 0.5);
+  EXPECT_LT(glass.consistencies()[30].through, 0.15);
 }
 
 TEST(ScanConsistency, LongGrazingBeamsThatAreALittleOffGoThroughNothing) {
@@ -166,20 +166,20 @@ TEST(ScanConsistency, LongGrazingBeamsThatAreALittleOffGoThroughNothing) {
     mapped.add(corridor, {2.0 + i, 0.2 * std::sin(i), 0.1 * std::cos(2.0 * i)}, laser(), rng);
     mapped.placed.back().map_from_robot.y_m += i % 2 == 0 ? 0.05 : -0.05;
   }
-  for (const ScanConsistency& one : mapped.agreements()) {
+  for (const ScanConsistency& one : mapped.consistencies()) {
     EXPECT_LT(one.through, 0.08);
     EXPECT_FALSE(one.contradicts_map);
   }
 }
 
-TEST(ScanConsistency, ScansOfOneLookAreNoEvidenceAboutEachOther) {
+TEST(ScanConsistency, ScansOfOneVisitAreNoEvidenceAboutEachOther) {
   const test::World world = test::uneven_room();
   std::mt19937 rng(1);
   Mapped mapped;
   for (int i = 0; i < 20; ++i) mapped.add(world, {0.01 * i, 0.0, 0.01 * i}, laser(), rng);
-  for (const ScanConsistency& one : mapped.agreements()) EXPECT_EQ(one.known(), 0.0);
+  for (const ScanConsistency& one : mapped.consistencies()) EXPECT_EQ(one.known(), 0.0);
 
-  // Twenty that lean alike are outvoted by three from elsewhere.
+  // Three scans from elsewhere outvote twenty that lean alike.
   for (std::size_t i = 0; i < 20; ++i) cut_short(mapped.ranges(i), 0, 271, 0.8F);
   for (const Pose2& pose : {Pose2{1.5, 0.0, 3.0}, Pose2{-1.5, 0.3, 0.1}, Pose2{0.3, 1.5, -1.5}}) {
     mapped.add(world, pose, laser(), rng);
@@ -191,22 +191,22 @@ TEST(ScanConsistency, ScansOfOneLookAreNoEvidenceAboutEachOther) {
 
 TEST(ScanConsistency, ALonelyScanAndOneWithoutReturnsContradictNothing) {
   Mapped mapped = ring(8, 1);
-  EXPECT_EQ(mapped.agreements().at(0).known(), 0.0);
+  EXPECT_EQ(mapped.consistencies().at(0).known(), 0.0);
   for (float& range_m : mapped.ranges(0)) range_m = std::nanf("");
-  EXPECT_EQ(mapped.agreements().at(0).known(), 0.0);
-  EXPECT_TRUE(Mapped{}.agreements().empty());
+  EXPECT_EQ(mapped.consistencies().at(0).known(), 0.0);
+  EXPECT_TRUE(Mapped{}.consistencies().empty());
 }
 
 TEST(ScanConsistency, PosesBeyondAnyMapAreLeftOut) {
   Mapped mapped = ring(9);
   mapped.placed[20].map_from_robot.x_m = std::numeric_limits<double>::quiet_NaN();
   mapped.placed[21].map_from_robot.x_m = 1e300;
-  EXPECT_EQ(mapped.agreements()[20].known(), 0.0);
-  EXPECT_EQ(mapped.agreements()[21].known(), 0.0);
+  EXPECT_EQ(mapped.consistencies()[20].known(), 0.0);
+  EXPECT_EQ(mapped.consistencies()[21].known(), 0.0);
   EXPECT_EQ(mapped.contradicting(), Indices{});
 }
 
-TEST(ScanConsistency, EachFragmentIsJudgedByItself) {
+TEST(ScanConsistency, EachComponentIsJudgedByItself) {
   const Mapped mapped = ring(4);
   std::vector<Component> components(2);
   for (const PlacedScan& place : mapped.placed) components[place.scan_index % 2].scans.push_back(place);
@@ -240,7 +240,7 @@ TEST(ScanConsistency, BothMethodsJudgeTheirScans) {
 TEST(ScanConsistency, RefusesLimitsThatAreNone) {
   ConsistencyOptions options;
   options.cell_m = 0.0;
-  EXPECT_THROW(Mapped{}.agreements(options), ConfigError);
+  EXPECT_THROW(Mapped{}.consistencies(options), ConfigError);
 }
 
 }  // namespace

@@ -25,14 +25,14 @@ Scanner noisy_scanner(double noise_m = 0.01) {
   return scanner;
 }
 
-/// A walk through a world that is turned by `turn_rad`.
+/// Walks through a world that is turned by `turn_rad`.
 PlacedLog walk_in(const World& world, double turn_rad = 0.0, double noise_m = 0.01) {
   World turned;
   for (const test::Wall& wall : world) {
     turned.push_back({rotate(wall.start_m, turn_rad), rotate(wall.end_m, turn_rad)});
   }
   const Point2 first_m = rotate({-2.0, 0.1}, turn_rad);
-  return walk_through(turned, {first_m.x(), first_m.y(), 0.7}, rotate({2.0, -0.2}, turn_rad), 9,
+  return walk_through(turned, {{first_m.x(), first_m.y(), 0.7}, rotate({2.0, -0.2}, turn_rad), 9},
                       noisy_scanner(noise_m));
 }
 
@@ -57,7 +57,7 @@ TEST(WallDirection, IsThatOfTheRoomWhateverStandsInIt) {
   for (const double turn_deg : {0.0, 3.0, 27.0, 44.0, -12.5, -44.0}) {
     const WallDirection found = direction_in(walk_in(room_with_clutter(), turn_deg * kDegree));
     EXPECT_NEAR(found.angle_rad / kDegree, turn_deg, 0.1);
-    EXPECT_TRUE(found.is_dominant()) << found.share << " " << found.rival_share;
+    EXPECT_TRUE(found.is_dominant()) << found.share << " " << found.second_share;
   }
 }
 
@@ -72,13 +72,13 @@ TEST(WallDirection, IsLeastOfTheFourTurns) {
 TEST(WallDirection, WithstandsNoise) {
   const WallDirection found = direction_in(walk_in(room_with_clutter(), 20 * kDegree, 0.05));
   EXPECT_NEAR(found.angle_rad / kDegree, 20.0, 0.3);
-  EXPECT_TRUE(found.is_dominant()) << found.share << " " << found.rival_share;
+  EXPECT_TRUE(found.is_dominant()) << found.share << " " << found.second_share;
 }
 
 TEST(WallDirection, OfRoundRoomsOctagonsAndTrianglesIsNone) {
   for (const int num_corners : {3, 6, 8, 60}) {
     const WallDirection found = direction_in(walk_in(polygon(num_corners, 6.0), 10 * kDegree));
-    EXPECT_FALSE(found.is_dominant()) << num_corners << ": " << found.share << " " << found.rival_share;
+    EXPECT_FALSE(found.is_dominant()) << num_corners << ": " << found.share << " " << found.second_share;
     EXPECT_EQ(found.turn_rad(), 0.0);
   }
   EXPECT_TRUE(direction_in(walk_in(polygon(4, 6.0))).is_dominant()) << "a square has one";
@@ -90,7 +90,7 @@ TEST(WallDirection, OfTwoWingsIsThatOfTheLarger) {
   add_box(world, {0.0, 3.0, 30 * kDegree}, 0.8, 0.5);
   const WallDirection found = direction_in(walk_in(world, 5 * kDegree));
   EXPECT_NEAR(found.angle_rad / kDegree, 5.0, 0.2);
-  EXPECT_LT(found.rival_share, found.share / 2);
+  EXPECT_LT(found.second_share, found.share / 2);
 }
 
 TEST(WallDirection, OfNothingIsNone) {
@@ -99,7 +99,7 @@ TEST(WallDirection, OfNothingIsNone) {
   EXPECT_FALSE(wall_direction(walk.log, {}, {}).is_dominant());
 }
 
-TEST(WallDirection, TurnsAllFragmentsAndNoMotion) {
+TEST(WallDirection, TurnsAllComponentsAndNoMotion) {
   PlacedLog walk = walk_in(room_with_clutter(), 17 * kDegree);
   const PlacedLog other = walk_in(room_with_clutter(), -5 * kDegree);
   const PlacedLog round = walk_in(polygon(60, 6.0));

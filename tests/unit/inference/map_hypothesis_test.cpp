@@ -34,8 +34,8 @@ struct Ring {
   std::vector<Pose2> truth = test::ring_walk(kRingLap + 8, 2);
   test::Views views = test::views_along(test::ring_world(1), truth);
   std::vector<EdgeChoices> edges;
-  std::vector<LoopCluster> clusters{test::cluster_of(truth, 3, 28, 5, 18.0, {2.0, 0.0, 0.0}),
-                                    test::cluster_of(truth, 0, kRingLap, 8, 12.0)};
+  std::vector<LoopCluster> clusters{test::cluster_of(truth, {3, 28, 5}, 18.0, {2.0, 0.0, 0.0}),
+                                    test::cluster_of(truth, {0, kRingLap, 8}, 12.0)};
   MapSearchOptions options;
 };
 
@@ -77,7 +77,7 @@ TEST(LoopChoiceOfMap, LeavesWithTheChainWhatNothingElseJoins) {
   ring.spoil(30, false);
   const MapHypothesis choice = ring.problem().of_map(ring.truth);
   EXPECT_THAT(choice.edge_choice, Each(0));
-  const std::vector<Pose2> chain = test::chained(ring.edges, ring.truth[0]);
+  const std::vector<Pose2> chain = test::dead_reckoning(ring.edges, ring.truth[0]);
   for (std::size_t n = 0; n < chain.size(); ++n) {
     EXPECT_THAT(choice.map_from_node[n], test::IsNearPose(chain[n], 1e-4, 1e-4)) << n;
   }
@@ -97,14 +97,14 @@ TEST(LoopChoiceOfMap, OfAnotherLogIsNotJoined) {
 /// That the same nodes look like another place as well counts against a loop, unless the map has them there, too.
 TEST(LoopChoiceWorth, IsLessByARivalThatTheMapContradicts) {
   Ring ring;
-  ring.clusters = {test::cluster_of(ring.truth, 0, kRingLap, 4, 18.0),
-                   test::cluster_of(ring.truth, 20, kRingLap, 4, 11.0, {4.0, 0.0, 0.0}),
-                   test::cluster_of(ring.truth, 4, kRingLap + 4, 4, 30.0)};
+  ring.clusters = {test::cluster_of(ring.truth, {0, kRingLap, 4}, 18.0),
+                   test::cluster_of(ring.truth, {20, kRingLap, 4}, 11.0, {4.0, 0.0, 0.0}),
+                   test::cluster_of(ring.truth, {4, kRingLap + 4, 4}, 30.0)};
   MapObjective problem = ring.problem();
   const MapHypothesis choice = problem.of_map(ring.truth);
   EXPECT_NEAR(problem.worth_in(choice, 0), 7.0, 1e-9);
   EXPECT_NEAR(problem.worth_in(choice, 2), 20.0, 1e-9) << "shares no node, and at most the cap";
-  ring.clusters[1] = test::cluster_of(ring.truth, 1, kRingLap, 4, 11.0, {});
+  ring.clusters[1] = test::cluster_of(ring.truth, {1, kRingLap, 4}, 11.0, {});
   MapObjective agreeing = ring.problem();
   EXPECT_NEAR(agreeing.worth_in(agreeing.of_map(ring.truth), 0), 18.0, 1e-9);
 }
@@ -113,7 +113,8 @@ TEST(LoopChoiceWorth, IsLessByARivalThatTheMapContradicts) {
 TEST(LoopChoiceValue, OfLoopsBetweenTheSameStretchesIsAtMostTheCap) {
   Ring ring;
   const auto gain_of_second = [&](std::size_t a, std::size_t b) {
-    ring.clusters = {test::cluster_of(ring.truth, 0, kRingLap, 8, 18.0), test::cluster_of(ring.truth, a, b, 4, 12.0)};
+    ring.clusters = {test::cluster_of(ring.truth, {0, kRingLap, 8}, 18.0),
+                     test::cluster_of(ring.truth, {a, b, 4}, 12.0)};
     MapObjective problem = ring.problem();
     MapHypothesis both = problem.of_map(ring.truth);
     EXPECT_THAT(both.accepted, ElementsAre(1, 1));

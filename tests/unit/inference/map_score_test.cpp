@@ -79,7 +79,7 @@ TEST(MapScore, IsBestForTheTruthAndWorseTheMoreTheMapIsBent) {
   double before = ring.score.of(ring.truth);
   EXPECT_GT(before, 0.0);
   for (const double drift_deg : {0.4, 1.2}) {
-    const std::vector<Pose2> bent = test::chained(test::drifting_edges(ring.truth, drift_deg * kDegree));
+    const std::vector<Pose2> bent = test::dead_reckoning(test::drifting_edges(ring.truth, drift_deg * kDegree));
     const double value = ring.score.of(bent);
     EXPECT_LT(value, before - 10.0) << drift_deg;
     before = value;
@@ -90,7 +90,7 @@ TEST(MapScore, IsBestForTheTruthAndWorseTheMoreTheMapIsBent) {
 TEST(MapScore, OfWhatOnlyALongChainHoldsCountsLittle) {
   const std::vector<Pose2> truth = test::ring_walk(2 * test::kRingLap, 2);
   const test::Views views = test::views_along(test::ring_world(1), truth);
-  const std::vector<Pose2> bent = test::chained(test::drifting_edges(truth, 1.2 * kDegree));
+  const std::vector<Pose2> bent = test::dead_reckoning(test::drifting_edges(truth, 1.2 * kDegree));
   ASSERT_GT(truth.size(), 45U) << "some pairs are far along the chain";
   std::vector<std::size_t> one_each(truth.size());
   std::iota(one_each.begin(), one_each.end(), std::size_t{0});
@@ -137,7 +137,7 @@ TEST(MapScore, DoesNotDependOnTheFrameOfTheMap) {
 
 TEST(MapScore, ThatRemembersGivesWhatAFreshOneGives) {
   Ring ring;
-  const std::vector<Pose2> bent = test::chained(test::drifting_edges(ring.truth, 1.0 * kDegree), ring.truth[0]);
+  const std::vector<Pose2> bent = test::dead_reckoning(test::drifting_edges(ring.truth, 1.0 * kDegree), ring.truth[0]);
   const auto fresh = [&](const std::vector<Pose2>& poses) { return MapScore(ring.views, {}, 1).of(poses); };
   const double of_truth = ring.score.of(ring.truth);
   const double of_bent = ring.score.of(bent);

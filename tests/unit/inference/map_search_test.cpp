@@ -29,12 +29,12 @@ constexpr double kGood_m = 0.35;
 struct Ring {
   explicit Ring(double drift_rad = 0.5 * kDegree) : edges(test::drifting_edges(truth, drift_rad)) {}
 
-  LoopCluster again(double strength) const { return test::cluster_of(truth, 0, kRingLap, kAgain, strength); }
+  LoopCluster again(double strength) const { return test::cluster_of(truth, {0, kRingLap, kAgain}, strength); }
 
   /// Says that the far side of the ring is the near one.
   LoopCluster wrong(double strength) const {
     const Pose2 far_to_near = truth[3] * inverse(truth[28]);
-    return test::cluster_of(truth, 3, 28, 5, strength, far_to_near);
+    return test::cluster_of(truth, {3, 28, 5}, strength, far_to_near);
   }
 
   MapSolution closed(const std::vector<LoopCluster>& clusters, RunObserver& observer, int threads = 1) const {
@@ -67,7 +67,7 @@ TEST(CloseLoops, WithoutLoopsLeavesTheChainAsItIs) {
   EXPECT_THAT(solution.accepted, IsEmpty());
   EXPECT_THAT(solution.edge_choice, Each(0));
   EXPECT_THAT(solution.component, Each(0));
-  const std::vector<Pose2> chain = test::chained(ring.edges);
+  const std::vector<Pose2> chain = test::dead_reckoning(ring.edges);
   for (std::size_t n = 0; n < chain.size(); ++n) {
     EXPECT_THAT(solution.map_from_node[n], test::IsNearPose(chain[n], 1e-9, 1e-9));
   }
@@ -75,7 +75,7 @@ TEST(CloseLoops, WithoutLoopsLeavesTheChainAsItIs) {
 
 TEST(CloseLoops, ClosesARingThatHasDriftedApart) {
   const Ring ring;
-  ASSERT_GT(test::worst_off_m(test::chained(ring.edges), ring.truth), 1.5);
+  ASSERT_GT(test::worst_off_m(test::dead_reckoning(ring.edges), ring.truth), 1.5);
   const MapSolution solution = ring.closed({ring.again(12.0)});
   EXPECT_THAT(solution.accepted, ElementsAre(0));
   EXPECT_THAT(solution.edge_choice, Each(0));
@@ -99,7 +99,7 @@ TEST(CloseLoops, RefusesALoopThatPullsScansThatAgreeApart) {
   Ring ring(0.0);
   for (EdgeChoices& edge : ring.edges) edge.candidates[0].covariance = test::covariance_of(0.3, 10 * kDegree);
   const auto shifted_by = [&](double shift_m) {
-    return test::cluster_of(ring.truth, 0, kRingLap, kAgain, 12.0, {shift_m, 0.0, 0.0});
+    return test::cluster_of(ring.truth, {0, kRingLap, kAgain}, 12.0, {shift_m, 0.0, 0.0});
   };
   EXPECT_THAT(ring.closed({shifted_by(1.2)}).accepted, IsEmpty());
   EXPECT_THAT(ring.closed({shifted_by(0.0)}).accepted, ElementsAre(0));
@@ -172,7 +172,7 @@ TEST(CloseLoops, IsAtLeastAsGoodWithHypothesesAsWithout) {
     EdgeChoices::Candidate& wrong = ring.edges[bad].candidates[0];
     wrong.a_from_b = wrong.a_from_b * Pose2{0.3, -0.5, 70 * kDegree};
     ring.edges[bad].probability = 0.3;
-    const std::vector<LoopCluster> clusters{test::cluster_of(ring.truth, bad - 1, bad + 1, 2, 8.0)};
+    const std::vector<LoopCluster> clusters{test::cluster_of(ring.truth, {bad - 1, bad + 1, 2}, 8.0)};
     const auto closed = [&](const std::vector<LoopCandidate>& candidates) {
       return close_loops(ring.views, ring.edges, candidates, clusters, {}, {}, 1, nobody);
     };
@@ -209,7 +209,7 @@ struct TwoWalks {
 
 TEST(CloseLoops, JoinsTwoPiecesOfOneWorld) {
   const TwoWalks walks(true);
-  const MapSolution solution = walks.closed({test::cluster_of(walks.truth, 3, TwoWalks::kFirst, 8, 24.0)});
+  const MapSolution solution = walks.closed({test::cluster_of(walks.truth, {3, TwoWalks::kFirst, 8}, 24.0)});
   EXPECT_THAT(solution.accepted, ElementsAre(0));
   EXPECT_THAT(solution.component, Each(0));
   EXPECT_EQ(solution.edge_choice[TwoWalks::kFirst - 1], kCut) << "the log has nothing to say there";
@@ -218,7 +218,7 @@ TEST(CloseLoops, JoinsTwoPiecesOfOneWorld) {
 
 TEST(CloseLoops, KeepsTwoWorldsApart) {
   const TwoWalks walks(false);
-  const LoopCluster wrong = test::cluster_of(walks.truth, 3, TwoWalks::kFirst, 8, 8.0);
+  const LoopCluster wrong = test::cluster_of(walks.truth, {3, TwoWalks::kFirst, 8}, 8.0);
   for (const MapSolution& solution : {walks.closed({}), walks.closed({wrong})}) {
     EXPECT_THAT(solution.accepted, IsEmpty());
     for (std::size_t n = 0; n < walks.truth.size(); ++n) {
@@ -232,13 +232,13 @@ TEST(CloseLoops, KeepsTwoWorldsApart) {
 
 TEST(CloseLoops, DoesNotJoinPiecesByAWeakLoop) {
   const TwoWalks walks(true);
-  const LoopCluster weak = test::cluster_of(walks.truth, 3, TwoWalks::kFirst, 8, 12.0);
+  const LoopCluster weak = test::cluster_of(walks.truth, {3, TwoWalks::kFirst, 8}, 12.0);
   EXPECT_THAT(walks.closed({weak}).accepted, IsEmpty());
 }
 
 TEST(CloseLoops, DoesNotJoinPiecesThatTwoLoopsWouldJoinDifferently) {
   const TwoWalks walks(true);
-  LoopCluster right = test::cluster_of(walks.truth, 3, TwoWalks::kFirst, 8, 24.0);
+  LoopCluster right = test::cluster_of(walks.truth, {3, TwoWalks::kFirst, 8}, 24.0);
   LoopCluster rival = right;
   for (LoopCandidate& member : rival.members) member.a_from_b = member.a_from_b * Pose2{0.0, 0.0, kPi};
   rival.strength = 11.0;

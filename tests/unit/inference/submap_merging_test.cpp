@@ -92,7 +92,7 @@ TEST(AssembledMap, TurnsANodeThatBothItsLinksHaveWrong) {
   only_after.edges[20] = walk.right[20];
   ASSERT_LT(walk.worth(only_before.chain()), walk.worth(walk.chain())) << "one alternative alone makes it worse";
   ASSERT_LT(walk.worth(only_after.chain()), walk.worth(walk.chain()));
-  expect_same_map(walk.assembled(), test::chained(walk.right));
+  expect_same_map(walk.assembled(), test::dead_reckoning(walk.right));
 }
 
 /// All ways to choose among the alternatives of `doubtful`; the map that is worth most.
@@ -123,7 +123,7 @@ TEST(AssembledMap, IsTheBestOfAllChoices) {
       walk.spoil(edge, walk.edges[edge].candidates[0].a_from_b * wrong);
     }
     const std::vector<Pose2> best = best_of_all_choices(walk, {doubtful.begin(), doubtful.end()});
-    expect_same_map(best, test::chained(walk.right));
+    expect_same_map(best, test::dead_reckoning(walk.right));
     expect_same_map(walk.assembled(), best);
   }
 }
@@ -131,13 +131,13 @@ TEST(AssembledMap, IsTheBestOfAllChoices) {
 TEST(AssembledMap, BridgesALinkThatHasNoRightAlternative) {
   Walk walk;
   walk.spoil(20, walk.edges[20].candidates[0].a_from_b * Pose2{0.3, -0.5, 70 * kDegree}, false);
-  const std::vector<LoopCandidate> bridge = test::cluster_of(walk.truth, 18, 21, 3, 0.0).members;
+  const std::vector<LoopCandidate> bridge = test::cluster_of(walk.truth, {18, 21, 3}, 0.0).members;
   EXPECT_GT(test::worst_off_m(walk.assembled(), walk.truth), 5.0);
-  EXPECT_LT(test::worst_off_m(walk.assembled(bridge), test::chained(walk.right)), 1.0);
+  EXPECT_LT(test::worst_off_m(walk.assembled(bridge), test::dead_reckoning(walk.right)), 1.0);
   std::vector<LoopCandidate> wrong = bridge;
   for (LoopCandidate& candidate : wrong) candidate.a_from_b = candidate.a_from_b * kTurned;
   wrong.insert(wrong.end(), bridge.begin(), bridge.end());
-  EXPECT_LT(test::worst_off_m(walk.assembled(wrong), test::chained(walk.right)), 1.0) << "the scans tell";
+  EXPECT_LT(test::worst_off_m(walk.assembled(wrong), test::dead_reckoning(walk.right)), 1.0) << "the scans tell";
 }
 
 /// The walk comes back to where it began. What the chain has drifted until then is spread over all of it, and is not
@@ -146,7 +146,7 @@ TEST(AssembledMap, IsBentToWhatItsHypothesesSay) {
   for (const double drift_deg : {0.1, 0.15}) {
     Walk walk(drift_deg * kDegree);
     walk.edges[30].probability = 0.6;
-    const std::vector<LoopCandidate> again = test::cluster_of(walk.truth, 0, kRingLap, 8, 0.0).members;
+    const std::vector<LoopCandidate> again = test::cluster_of(walk.truth, {0, kRingLap, 8}, 0.0).members;
     ASSERT_GT(test::worst_off_m(walk.assembled(), walk.truth), 0.5);
     const std::vector<Pose2> map = walk.assembled(again);
     EXPECT_LT(test::worst_off_m(map, walk.truth), 0.2);
@@ -161,13 +161,13 @@ TEST(AssembledMap, NeverLaysPiecesOfDifferentLogsTogether) {
   walk.edges[kLast] = {};
   walk.turn_node(10);
   walk.turn_node(40);
-  std::vector<LoopCandidate> joins = test::cluster_of(walk.truth, 0, kRingLap, 8, 0.0).members;
-  const std::vector<LoopCandidate> more = test::cluster_of(walk.truth, kLast - 3, kLast + 1, 4, 0.0).members;
+  std::vector<LoopCandidate> joins = test::cluster_of(walk.truth, {0, kRingLap, 8}, 0.0).members;
+  const std::vector<LoopCandidate> more = test::cluster_of(walk.truth, {kLast - 3, kLast + 1, 4}, 0.0).members;
   joins.insert(joins.end(), more.begin(), more.end());
   const std::vector<Pose2> map = walk.assembled(joins);
   EXPECT_THAT(inverse(map[kLast]) * map[kLast + 1], IsNearPose((Pose2{1e4, 0.0, 0.0}), 1e-6, 1e-9));
   const auto first = static_cast<std::ptrdiff_t>(kLast + 1);
-  const std::vector<Pose2> right = test::chained(walk.right);
+  const std::vector<Pose2> right = test::dead_reckoning(walk.right);
   expect_same_map({map.begin(), map.begin() + first}, {right.begin(), right.begin() + first});
   expect_same_map({map.begin() + first, map.end()}, {right.begin() + first, right.end()});
 }
@@ -176,7 +176,7 @@ TEST(AssembledMap, OfAVariantIsTheSameToTheBitForAnyNumberOfThreads) {
   Walk walk;
   walk.turn_node(20);
   walk.turn_node(40);
-  const std::vector<LoopCandidate> again = test::cluster_of(walk.truth, 0, kRingLap, 8, 0.0).members;
+  const std::vector<LoopCandidate> again = test::cluster_of(walk.truth, {0, kRingLap, 8}, 0.0).members;
   for (int variant = 0; variant < 4; ++variant) {
     const std::vector<Pose2> map = walk.assembled(again, variant);
     for (const int threads : {1, 3}) {
@@ -216,7 +216,7 @@ TEST(AssembledMap, IsRightInSomeVariantWhereTheFirstIsNot) {
     most = std::max(most, walk.worth(map));
   }
   EXPECT_GT(most, first_worth + 20.0);
-  expect_same_map(best, test::chained(walk.right));
+  expect_same_map(best, test::dead_reckoning(walk.right));
 }
 
 TEST(AssembledMap, StoppedAtAnyTimeHasTheRestFromTheChain) {
@@ -224,7 +224,7 @@ TEST(AssembledMap, StoppedAtAnyTimeHasTheRestFromTheChain) {
   for (const std::size_t node : {10U, 20U, 40U}) walk.turn_node(node);
   test::Patience patient(1000);
   const std::vector<Pose2> whole = walk.assembled({}, patient);
-  expect_same_map(whole, test::chained(walk.right));
+  expect_same_map(whole, test::dead_reckoning(walk.right));
   EXPECT_EQ(patient.asked, 7U) << "once for each time that two of seven pieces are laid together, and at the end";
   const std::vector<Pose2> chain = walk.chain();
   for (std::size_t times = 0; times <= 7; ++times) {

@@ -4,7 +4,7 @@
 
 #include "shapemap/mapper/map_log.hpp"
 #include "support/matchers.hpp"
-#include "support/sub_scans.hpp"
+#include "support/sweeps_at_stops.hpp"
 
 namespace shapemap {
 namespace {

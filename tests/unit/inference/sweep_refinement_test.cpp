@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "support/matchers.hpp"
-#include "support/sub_scans.hpp"
+#include "support/sweeps_at_stops.hpp"
 
 namespace shapemap {
 namespace {

@@ -41,7 +41,7 @@ TEST(BareText, GeometryComesFromTheOptions) {
   EXPECT_EQ(returns_in_robot(sweep, {}).size(), 3U);
 }
 
-TEST(BareText, AnIncompleteLastPositionIsKeptWithAWarning) {
+TEST(BareText, AnIncompleteLastScanIsKeptWithAWarning) {
   const TempFolder folder;
   const Log log = read_log(folder.write("a.txt", "1 2\n1 2\n1 2\n1 2\n1 2\n"), LogFormat::kNist, four_sweeps());
   EXPECT_EQ(log.scans.size(), 2U);

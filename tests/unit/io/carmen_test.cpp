@@ -20,7 +20,7 @@ std::string readings(int count, const std::string& reading = "1.5") {
   return text;
 }
 
-/// Only the readings, each with a blank in front.
+/// Returns only the readings, each with a blank in front.
 std::string times(int count, const std::string& reading) {
   const std::string text = readings(count, reading);
   return text.substr(text.find(' '));

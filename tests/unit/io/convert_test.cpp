@@ -9,14 +9,15 @@ namespace shapemap {
 namespace {
 
 using test::expect_same_points;
-using test::make_scan;
+using test::make_sweep;
 using test::TempFolder;
 using testing::HasSubstr;
 
 constexpr double kTolerance_m = 1e-5;  // MRPT stores the field of view as a float
 constexpr LogFormat kFormats[] = {LogFormat::kRawlog, LogFormat::kCarmen, LogFormat::kNist};
 
-/// Everything that is hard to keep: turns, offsets, clockwise, upside-down and tilted lasers, angles off the middle.
+/// The log has all that is hard to keep: turns, offsets, clockwise, upside-down and tilted lasers, angles off the
+/// middle.
 Log awkward_log() {
   Log log;
   log.format = "nist";
@@ -24,7 +25,7 @@ Log awkward_log() {
     Scan scan;
     scan.timestamp_s = 1137834225.7133856 + 0.125 * i;
     for (int turn = 0; turn < 4; ++turn) {
-      Sweep sweep = make_scan(101, -50 * kDegree, kDegree);
+      Sweep sweep = make_sweep(101, -50 * kDegree, kDegree);
       sweep.nominal_heading_rad = wrap_angle(turn * 90 * kDegree);
       sweep.robot_from_sensor = {0.1, -0.05, 0.3, 0.2, 0.0, 0.0};
       scan.sweeps.push_back(sweep);
@@ -47,7 +48,7 @@ Log flaser_log() {
   Log log;
   Scan scan;
   scan.timestamp_s = 12.5;
-  scan.sweeps.push_back(make_scan(181, -90 * kDegree, kDegree));
+  scan.sweeps.push_back(make_sweep(181, -90 * kDegree, kDegree));
   log.scans.push_back(scan);
   return log;
 }
@@ -197,7 +198,7 @@ TEST(Summarise, CountsWhatTheLogHolds) {
   EXPECT_NEAR(summary.sensors[0].fov_rad, 100 * kDegree, 1e-12);
   EXPECT_EQ(summary.sensors[0].max_range_m, 20.0);
   EXPECT_EQ(summary.sensors[0].shortest_return_m, 1.0);
-  EXPECT_EQ(summary.sensors[0].longest_return_m, 20.0);  // the last sub-scan has no maximum
+  EXPECT_EQ(summary.sensors[0].longest_return_m, 20.0);  // the last sweep has no maximum
   EXPECT_DOUBLE_EQ(summary.sensors[0].return_ratio, (99.0 + 99.0 + 100.0) / 303.0);
   EXPECT_EQ(summarise(Log{}).num_scans, 0U);
 }

@@ -21,7 +21,7 @@ class MapFiles : public testing::Test {
   test::TempFolder folder_;
 };
 
-/// A robot at (2, 1) that faces north and sees a wall 3 m ahead, 1 m to its right, and nothing to its left.
+/// A robot at (2, 1) faces north and sees a wall 3 m ahead, 1 m to its right, and nothing to its left.
 struct World {
   Log log;
   std::vector<PlacedScan> placed;
@@ -39,7 +39,7 @@ struct World {
   OccupancyGrid map() const { return build_occupancy_grid(log, placed, ReturnOptions{}, OccupancyGridOptions{0.07}); }
 };
 
-/// Numbers of a map.yaml in the way of ROS map_server.
+/// Reads the numbers of a map.yaml in the way of ROS map_server.
 struct RosMap {
   double resolution = 0.0;
   double origin_x = 0.0;
@@ -49,7 +49,7 @@ struct RosMap {
     const char* const format = "image: \"%*[^\"]\"\nresolution: %lf\norigin: [%lf, %lf, 0]";
     EXPECT_EQ(std::sscanf(yaml.c_str(), format, &resolution, &origin_x, &origin_y), 3) << yaml;
   }
-  /// map_server: the origin is the lower left corner of the lower left pixel; row 0 is the top of the picture.
+  /// For map_server, the origin is the lower left corner of the lower left pixel, and row 0 is the top of the picture.
   int grey_at(const cv::Mat& image, const Point2& p_m) const {
     const int column = static_cast<int>(std::floor((p_m.x() - origin_x) / resolution));
     const int row = image.rows - 1 - static_cast<int>(std::floor((p_m.y() - origin_y) / resolution));
@@ -92,10 +92,11 @@ TEST_F(MapFiles, APathIsDrawnInColourOrInGrey) {
   const cv::Mat colour = cv::imread(in_folder("map.png"), cv::IMREAD_UNCHANGED);
   ASSERT_EQ(colour.type(), CV_8UC3);
   ASSERT_EQ(colour.cols, map.width_cells);
-  const int strip = colour.rows - map.height_cells;  // above the map: its lower left corner is the origin
+  // the strip is above the map, whose lower left corner is the origin
+  const int strip = colour.rows - map.height_cells;
   ASSERT_GT(strip, 0);
   const cv::Vec3b start = colour.at<cv::Vec3b>(strip + robot.y(), robot.x());
-  EXPECT_GT(start[1], start[2]) << "the first position is green";
+  EXPECT_GT(start[1], start[2]) << "the first scan is green";
 
   write_map_image(map, in_folder("map.pgm"), &world.placed);
   const cv::Mat grey = cv::imread(in_folder("map.pgm"), cv::IMREAD_UNCHANGED);
@@ -135,7 +136,7 @@ TEST_F(MapFiles, AnotherEndingIsRefusedAndNothingIsLeft) {
   EXPECT_TRUE(folder_.names().empty());
 }
 
-TEST(TumTrajectory, HasOneLinePerPositionWithAUnitQuaternion) {
+TEST(TumTrajectory, HasOneLinePerScanWithAUnitQuaternion) {
   const std::vector<PlacedScan> placed{{0, 1234567890.123456, {1.5, -2.25, kPi / 2}, {}}, {3, 2.0, {}, {}}};
   std::istringstream lines(tum_trajectory(placed));
   double t, x, y, z, qx, qy, qz, qw;

@@ -20,7 +20,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr std::size_t kRecordBytes = 8 + 24 + 208;  // of one hypothesis
+constexpr std::size_t kRecordBytes = 8 + 24 + 208;  // bytes of a record with one candidate
 
 Log log_of(std::size_t num_scans) {
   Log log;
@@ -32,7 +32,7 @@ Log log_of(std::size_t num_scans) {
   return log;
 }
 
-/// Numbers that text would not keep, and all different.
+/// The numbers would not survive as text, and are all different.
 MatchCandidate candidate(double seed) {
   MatchCandidate h;
   h.ref_from_query = {seed / 3.0, -0.0, std::nextafter(seed, 10.0)};
@@ -78,7 +78,7 @@ class MatchCacheFileTest : public ::testing::Test {
  protected:
   MatchCacheFile opened(StateOpening opening) const { return {path_, opening, log_, options_}; }
 
-  /// A file with the alignments of position 0 to 1, 2 and 3.
+  /// Makes a file with the matches of scan 0 with 1, 2 and 3.
   void make_three() const {
     MatchCacheFile state = opened(StateOpening::kCreate);
     for (std::size_t i = 1; i <= 3; ++i) state.keep({0, i}, {candidate(static_cast<double>(i))});
@@ -137,7 +137,7 @@ TEST_F(MatchCacheFileTest, KnowsThatNothingWasFound) {
   EXPECT_THAT(*found, IsEmpty());
 }
 
-TEST_F(MatchCacheFileTest, KeepsEachAlignmentOnce) {
+TEST_F(MatchCacheFileTest, KeepsEachMatchOnce) {
   MatchCacheFile state = opened(StateOpening::kCreate);
   state.keep({0, 1}, {candidate(1)});
   const auto size = std::filesystem::file_size(path_);

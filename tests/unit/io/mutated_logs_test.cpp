@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Logs of each format with damaged headers, read and mapped. SHAPEMAP_MUTATIONS says how many; a run of 3000 with
-// sanitizers takes about a quarter of an hour.
+// Logs of each format get damaged headers, and are read and mapped. SHAPEMAP_MUTATIONS says how many; a run of 3000
+// with sanitizers takes about a quarter of an hour.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -24,7 +24,7 @@ using test::Outcome;
 using test::TempFolder;
 
 constexpr int kFewMutations = 120;
-constexpr unsigned kLongest_s = 60;  // of one; with sanitizers on a busy machine an unharmed log takes one
+constexpr unsigned kLongest_s = 60;  // of one log; with sanitizers on a busy machine an unharmed log takes one
 constexpr long kMostGrowth_KiB = 2 * 1024 * 1024;
 
 int num_mutations() {
@@ -32,7 +32,7 @@ int num_mutations() {
   return wanted != nullptr ? std::atoi(wanted) : kFewMutations;
 }
 
-/// Through a room, with few beams.
+/// Walks through a room with few beams.
 Log walk(int num_scans = 3, double step_m = 0.2) {
   Log log;
   test::Scanner scanner;
@@ -54,7 +54,7 @@ std::string readings(const Sweep& sweep) {
   return text;
 }
 
-/// The same walk by the convention of 180 readings.
+/// Writes the same walk by the convention of 180 readings.
 std::string flaser_lines() {
   Log log = walk();
   std::string text = "PARAM robot_front_laser_max 20.0 host 0\n";
@@ -68,8 +68,8 @@ std::string flaser_lines() {
   return text;
 }
 
-/// What only the second version of the text format says: ten sweeps a second, whose beams have times; one of them has
-/// angles and intensities of its own.
+/// Only the second version of the text format can hold this log: ten sweeps a second, whose beams have times; one of
+/// them has angles and intensities of its own.
 Log rolling_walk() {
   constexpr double kPeriod_s = 0.1;
   Log log = walk(5, 0.05);
@@ -109,7 +109,7 @@ std::vector<Sample> samples(const TempFolder& folder) {
   return all;
 }
 
-/// Headers are what is to be mutated: of words that stand in a long row of numbers, only the first few are looked at.
+/// Headers are to be mutated, so that only the first few words of a long row of numbers count.
 std::vector<std::pair<std::size_t, std::size_t>> header_words(const std::string& text) {
   constexpr std::size_t kFirstReadings = 14;
   constexpr std::size_t kLastWords = 14;
@@ -172,7 +172,7 @@ class Mutator {
     content.replace(at, length, odd[below(odd.size())]);
   }
 
-  /// In the header of a binary object: a byte, a bit, or a number of 4 or 8 bytes.
+  /// Changes a byte, a bit, or a number of 4 or 8 bytes in the header of a binary object.
   void change_bytes(std::string& content, bool is_text) {
     if (content.size() < 16) return;
     const std::size_t at = below(content.size() - 8);
@@ -199,7 +199,7 @@ class Mutator {
   std::mt19937 rng_;
 };
 
-/// Ends a run that does not end, and says which it was.
+/// Ends a run that does not end by itself, and says which it was.
 class Watch {
  public:
   Watch() { std::signal(SIGALRM, on_alarm); }
@@ -245,7 +245,7 @@ TEST(MutatedLogs, AreMappedOrRefused) {
     watch.start(i);
     EXPECT_NO_THROW(num_mapped += test::read_and_map(path) == Outcome::kMapped ? 1 : 0);
   }
-  // Neither is rare, else the mutations would be too weak or too strong to tell anything.
+  // Neither outcome is rare, else the mutations would be too weak or too strong to tell anything.
   EXPECT_GT(num_mapped, count / 10);
   EXPECT_LT(num_mapped, count * 9 / 10);
   EXPECT_LT(peak_KiB() - before_KiB, kMostGrowth_KiB);
@@ -262,7 +262,7 @@ class MutatedStates : public testing::Test {
     map_log(log_, options_, observer, nullptr, &state);
   }
 
-  /// Where the numbers of each hypothesis begin, and which record they belong to.
+  /// The place where the numbers of a candidate begin, and the record that it belongs to.
   struct Place {
     std::size_t record;
     std::size_t numbers;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What version 2 of our text format says of scans, and version 1 could not.
+// Version 2 of the text format states these things about sweeps, which version 1 could not.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -104,7 +104,7 @@ TEST_F(NistScan, WhatIsWrittenReadsBackToTheSameBits) {
   for (int i = 0; i < 3; ++i) {
     Scan scan;
     scan.timestamp_s = i;
-    Sweep sweep = test::make_scan(static_cast<std::size_t>(5 + i), -0.1 - 0.01 * i, 0.013);
+    Sweep sweep = test::make_sweep(static_cast<std::size_t>(5 + i), -0.1 - 0.01 * i, 0.013);
     sweep.beam_time_step_s = 1.0 / 7 / 360;
     sweep.start_s = 0.1 / 3 * i;
     sweep.nominal_heading_rad = 0.1 * i;
@@ -136,7 +136,7 @@ TEST_F(NistScan, WhatIsWrittenReadsBackToTheSameBits) {
 TEST_F(NistScan, TheFirstVersionIsWrittenWhereItSuffices) {
   Log log;
   log.scans.emplace_back();
-  log.scans[0].sweeps.push_back(test::make_scan(5, 0.0, 0.1));
+  log.scans[0].sweeps.push_back(test::make_sweep(5, 0.0, 0.1));
   write_log(log, folder_.path("a.nist"), LogFormat::kNist);
   EXPECT_THAT(test::read_file(folder_.path("a.nist")), HasSubstr("shapemap-scans 1\nunits m deg\n"));
   for (const LogFormat format : {LogFormat::kCarmen, LogFormat::kRawlog}) EXPECT_EQ(what_is_lost(log, format), "");

@@ -7,7 +7,7 @@
 #include "shapemap/grid/occupancy_grid.hpp"
 #include "support/placed_world.hpp"
 
-/// Free space that beams without a return have crossed.
+/// Beams without a return have crossed free space.
 namespace shapemap {
 namespace {
 
@@ -15,7 +15,7 @@ using test::PlacedLog;
 
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 
-/// Three beams: right, ahead, left.
+/// The three beams look right, ahead and left.
 Scan three_beams(float right_m, float ahead_m, float left_m, double max_range_m = 8.0) {
   Sweep sweep;
   sweep.ranges_m = {right_m, ahead_m, left_m};
@@ -98,7 +98,8 @@ TEST(NoReturnRays, StopAtWhatIsKnownToBeAWall) {
 
 TEST(NoReturnRays, DoNotSlipThroughACornerOfAWall) {
   PlacedLog walk;
-  // Hits in the cells (1, 0) and (0, 1), and a beam through the corner that they share, to the cells (1, 1) and on.
+  // Returns lie in the cells (1, 0) and (0, 1), and a beam passes the corner that they share, to the cells (1, 1) and
+  // on.
   walk.add(three_beams(kNothing, 0.1F, 0.1F), {0.05, 0.05, 0.0});
   walk.log.scans[0].sweeps[0].ranges_m[0] = 1.0F;
   walk.add(three_beams(1.0F, kNothing, 1.0F), {0.05, 0.05, 45 * kDegree});

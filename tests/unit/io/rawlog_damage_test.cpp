@@ -13,13 +13,13 @@ namespace shapemap {
 namespace {
 
 #ifdef __SANITIZE_ADDRESS__
-constexpr long kMaxGrowth_KiB = 1024 * 1024;  // AddressSanitizer keeps what is freed for a while, by default 256 MiB
+constexpr long kMaxGrowth_KiB = 1024 * 1024;  // AddressSanitizer keeps freed memory for a while, by default 256 MiB
 #else
 constexpr long kMaxGrowth_KiB = 64 * 1024;
 #endif
 
 using test::input_error;
-using test::make_scan;
+using test::make_sweep;
 using test::TempFolder;
 using testing::AllOf;
 using testing::ElementsAre;
@@ -35,7 +35,7 @@ class RawlogDamage : public testing::Test {
     for (int i = 0; i < kNumScans; ++i) {
       Scan scan;
       scan.timestamp_s = 100.0 + i;
-      scan.sweeps = {make_scan(50, -1.0, 0.02), make_scan(50, 0.5, 0.02)};
+      scan.sweeps = {make_sweep(50, -1.0, 0.02), make_sweep(50, 0.5, 0.02)};
       log.scans.push_back(scan);
       poses.map_from_robot.push_back({0.1 * i, 0.0, 0.0});
     }
@@ -43,7 +43,7 @@ class RawlogDamage : public testing::Test {
     content_ = test::read_gz(folder_.path("whole.rawlog"));
   }
 
-  /// The n-th place where the number of beams stands in front of the first reading.
+  /// Finds the n-th place where the number of beams stands in front of the first reading.
   std::size_t beam_count_offset() const {
     const std::uint32_t count = 50;
     const float first = 1.0F;
@@ -72,7 +72,7 @@ TEST_F(RawlogDamage, CutAnywhereGivesWhatIsWhole) {
       ASSERT_GE(log.scans.size(), most);
       most = log.scans.size();
       for (const Scan& scan : log.scans) ASSERT_EQ(scan.sweeps.size(), 2U);
-      // A cut just between two entries, or behind an end mark, cannot be seen.
+      // A cut just between two entries, or behind an end mark, cannot be detected.
       if (!log.warnings.empty()) {
         EXPECT_THAT(log.warnings, ElementsAre(AllOf(HasSubstr("whole entries"), HasSubstr("offset"))));
       }

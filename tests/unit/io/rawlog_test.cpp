@@ -33,7 +33,7 @@ CObservation2DRangeScan::Ptr mrpt_scan(const std::string& label, double timestam
   return scan;
 }
 
-/// Objects one after the other, as MRPT writes them into rawlogs.
+/// The objects follow each other, as MRPT writes them into rawlogs.
 class Rawlog : public testing::Test {
  protected:
   template <class... Objects>
@@ -56,7 +56,7 @@ class Rawlog : public testing::Test {
   LogReadOptions options_;
 };
 
-TEST_F(Rawlog, ScansOfAFrameAreSubScansOfOnePosition) {
+TEST_F(Rawlog, ObservationsOfAFrameAreSweepsOfOneScan) {
   auto comment = mrpt::obs::CObservationComment::Create();
   comment->text = "\x88\x88 not the end";
   const Log log = read(mrpt::obs::CActionCollection(), frame({mrpt_scan("a", 5.5), comment, mrpt_scan("b", 6.0)}),
@@ -71,7 +71,7 @@ TEST_F(Rawlog, ScansOfAFrameAreSubScansOfOnePosition) {
   EXPECT_EQ(log.scans[1].timestamp_s, 7.0);
 }
 
-TEST_F(Rawlog, LoneObservationsAreOnePositionEachOfTheFirstLaser) {
+TEST_F(Rawlog, LoneObservationsAreOneScanEachOfTheFirstLaser) {
   mrpt::obs::CObservationOdometry odometry;
   const Log log = read(odometry, *mrpt_scan("front", 1.0), odometry, *mrpt_scan("rear", 1.5), *mrpt_scan("front", 2.0));
   ASSERT_EQ(log.scans.size(), 2U);

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Three positions: the first two make the map, the third could not be aligned.
+/// Of three scans, the first two make the map, and the third could not be matched.
 class Report : public testing::Test {
  protected:
   Report() {
@@ -68,7 +68,7 @@ class Report : public testing::Test {
   std::vector<WallDirection> walls_;
 };
 
-TEST_F(Report, TellsWhatBecameOfEachPosition) {
+TEST_F(Report, TellsWhatBecameOfEachScan) {
   const Json report = parsed();
   EXPECT_EQ(report["num_positions"], 3);
   EXPECT_EQ(report["num_placed"], 2);
@@ -149,7 +149,7 @@ TEST_F(Report, ShowsNoPoseWhereNoneIsTrusted) {
   EXPECT_TRUE(parsed()["positions"][1]["alignment"]["ref_from_query"].is_null());
 }
 
-TEST_F(Report, ListsFragmentsAndWhichOneIsTheMap) {
+TEST_F(Report, ListsComponentsAndWhichOneIsTheMap) {
   const Json components = parsed()["fragments"];
   ASSERT_EQ(components.size(), 2U);
   EXPECT_EQ(components[0]["num_positions"], 2);
@@ -159,7 +159,7 @@ TEST_F(Report, ListsFragmentsAndWhichOneIsTheMap) {
   EXPECT_EQ(components[1]["is_map"], false);
 }
 
-TEST_F(Report, TellsWhichLogEachPositionIsFrom) {
+TEST_F(Report, TellsWhichLogEachScanIsFrom) {
   logs_.push_back({"other.rawlog", "rawlog"});
   log_.starts = {1};
   const Json report = parsed();
@@ -208,12 +208,12 @@ TEST_F(Report, TellsHowEachScanGoesWithTheRest) {
   const Json wanted = Json::parse(R"({"agree": 0.5, "through": 0.25, "in_free": 0.125, "contradicts_map": true})");
   EXPECT_EQ(report["positions"][1]["agreement"], wanted);
   EXPECT_EQ(report["positions"][0]["agreement"]["contradicts_map"], false);
-  EXPECT_EQ(report["positions"][2]["agreement"]["in_free"], 1.0) << "with its own fragment";
-  EXPECT_TRUE(report["positions"][3]["agreement"].is_null()) << "in no fragment";
+  EXPECT_EQ(report["positions"][2]["agreement"]["in_free"], 1.0) << "with its own component";
+  EXPECT_TRUE(report["positions"][3]["agreement"].is_null()) << "in no component";
   EXPECT_EQ(report["seconds"]["agreement"], 0.5);
 }
 
-TEST_F(Report, TellsTheKeyframeThatAnAlignmentIsTo) {
+TEST_F(Report, TellsTheKeyframeThatAScanIsMatchedWith) {
   result_.scans[1].is_keyframe = false;
   const Json scans = parsed()["positions"];
   EXPECT_EQ(scans[0]["is_keyframe"], true);

@@ -56,7 +56,7 @@ class TraceOfAWalk : public testing::Test {
   SelectionOptions selection_;
 };
 
-/// Compares the pairs that the file names with those of an alignment made anew, point by point.
+/// Compares the pairs that the file names with those of a match that is made anew, point by point.
 struct Comparison : TraceSink {
   void on_alignment(const TracedAlignment& traced) override {
     all.push_back(traced.steps.rotations.at(static_cast<std::size_t>(traced.steps.best_rotation)));
@@ -138,9 +138,9 @@ TEST_F(TraceOfAWalk, HoldsTheHistogramsThatMatchingSees) {
   }
 }
 
-TEST_F(TraceOfAWalk, HasTheAlternativesOfTheRobustMethod) {
+TEST_F(TraceOfAWalk, HasTheCandidatesOfTheRobustMethod) {
   options_.run.method = Method::kRobust;
-  options_.robust.keyframes.step_m = 0.0;  // each scan is aligned to the one before it
+  options_.robust.keyframes.step_m = 0.0;  // each scan is matched with the one before it
   write(path());
   auto traced = records(path());
   EXPECT_EQ(traced.count("alignment"), 0U);
@@ -157,10 +157,10 @@ TEST_F(TraceOfAWalk, HasTheAlternativesOfTheRobustMethod) {
   }
 }
 
-TEST_F(TraceOfAWalk, TellsHowLinksInDoubtWereJudged) {
+TEST_F(TraceOfAWalk, TellsHowEdgesInDoubtWereJudged) {
   options_.run.method = Method::kRobust;
   options_.robust.keyframes.step_m = 0.0;
-  options_.robust.edge_verification.doubt_below = 1.0;  // all are
+  options_.robust.edge_verification.doubt_below = 1.0;  // all edges are in doubt
   const MapResult mapped = write(path());
   auto traced = records(path());
   ASSERT_EQ(traced["revision"].size(), 3U);

@@ -105,7 +105,7 @@ TEST_F(TrajectoryFiles, BadTumLinesAreNamedWithFileAndLine) {
   fails_with("1 0 0 0 0 0 0 0\n", ":1: qx qy qz qw is no turn");
 }
 
-TEST(Motions, AreThoseBetweenPlacedPositionsAfterAZeroForTheFirst) {
+TEST(Motions, AreThoseBetweenPlacedScansAfterAZeroForTheFirst) {
   MapResult result;
   result.largest_component = 0;
   result.components.emplace_back();
@@ -115,7 +115,7 @@ TEST(Motions, AreThoseBetweenPlacedPositionsAfterAZeroForTheFirst) {
     scan.match.covariance = Eigen::Matrix3d::Identity() * static_cast<double>(i);
     result.scans.push_back(scan);
   }
-  // The second position of the log has no place.
+  // The second scan of the log has no pose.
   result.components[0].scans.push_back({0, 10.0, {1.0, 2.0, kPi / 2}, {}});
   result.components[0].scans.push_back({2, 12.0, {1.0, 5.0, kPi}, {}});
   const std::vector<TimedMotion> motions = motions_of(result);
@@ -139,7 +139,7 @@ TEST(Motions, AreThoseBetweenPlacedPositionsAfterAZeroForTheFirst) {
   EXPECT_EQ(motions_of(result)[1].covariance, Eigen::Matrix3d::Identity());
 }
 
-/// A keyframe and two scans that are aligned to it.
+/// A keyframe, and two scans that are matched with it.
 struct Siblings : testing::Test {
   Siblings() {
     result.largest_component = 0;
@@ -160,7 +160,7 @@ struct Siblings : testing::Test {
   MapResult result;
 };
 
-TEST_F(Siblings, MotionBetweenThemErrsByBothAlignments) {
+TEST_F(Siblings, MotionBetweenThemErrsByBothMatches) {
   const std::vector<TimedMotion> motions = motions_of(result);
   EXPECT_EQ(motions[1].covariance, result.scans[1].match.covariance) << "from the keyframe itself";
   std::mt19937 rng(7);
@@ -181,7 +181,7 @@ TEST_F(Siblings, MotionBetweenThemErrsByBothAlignments) {
   EXPECT_LT((motions[2].covariance - sampled).norm(), 0.05 * sampled.norm());
 }
 
-TEST_F(Siblings, SomeOfThePlacedPositionsHaveMotionsAmongThemselves) {
+TEST_F(Siblings, SomeOfThePlacedScansHaveMotionsAmongThemselves) {
   const std::vector<PlacedScan>& placed = result.components[0].scans;
   const std::vector<TimedMotion> motions = motions_of(result, {placed[1], placed[2]});
   ASSERT_EQ(motions.size(), 2U);

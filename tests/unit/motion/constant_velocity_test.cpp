@@ -52,7 +52,7 @@ TEST(ConstantVelocityPrior, KnowsNothingOfFew) {
   EXPECT_EQ(expected.usual_rad, kUsualSurprise_rad);
 }
 
-/// Twice what 95 of 100 are within.
+/// The usual deviation is twice the one that 95 of 100 are within.
 TEST(ConstantVelocityPrior, LearnsWhatIsUsual) {
   const ExpectedPose expected = after(400, 0.08, 4 * kDegree).at(kPose);
   EXPECT_NEAR(expected.usual_m, 2 * 0.95 * 0.08, 0.015);

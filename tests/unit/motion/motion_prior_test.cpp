@@ -13,7 +13,7 @@
 namespace shapemap {
 namespace {
 
-/// Forward by about a metre, turning a little.
+/// The robot goes forward by about a metre, turning a little.
 std::vector<Pose2> of_a_robot(std::size_t count, std::mt19937& rng) {
   std::normal_distribution<double> normal;
   std::vector<Pose2> motions;
@@ -52,7 +52,7 @@ TEST(MotionPrior, TellsTheMoreTheMoreIsKnownAndNeverMuch) {
   EXPECT_LT(before, 12.0);
 }
 
-/// A quarter of a metre more is unusual for one that goes by decimetres, and little for one that goes by metres.
+/// A quarter of a metre more is unusual for a robot that goes by decimetres, and little for one that goes by metres.
 TEST(MotionPrior, IsAsExactAsStepsAreShort) {
   const auto surprise_by_more = [](double step_m) {
     std::vector<Pose2> motions;
@@ -69,7 +69,7 @@ TEST(MotionPrior, OfNineMotionsOneInSixWouldBeOfANewKind) {
   EXPECT_NEAR(surprise, 3.0 * std::log(6.0), 0.3);
 }
 
-/// One that turns as it likes and goes any way is surprised by none of that.
+/// A robot that turns as it likes and goes any way is surprised by no such motion.
 TEST(MotionPrior, LearnsLittleOfAnyMotion) {
   std::mt19937 rng(3);
   std::uniform_real_distribution<double> any(-kPi, kPi);
@@ -102,7 +102,7 @@ TEST(FindUsualCandidates, AreThoseOfAnyOtherSearchWhereNothingIsKnown) {
   EXPECT_NEAR(found.front().score, candidate_at(reference, query, found.front().ref_from_query, {}).score, 0.5);
 }
 
-/// Along a bare corridor nothing but the habit tells how far the robot went.
+/// Along a bare corridor nothing but the motion prior tells how far the robot went.
 TEST(FindUsualCandidates, AlongABareCorridorAreWhereTheRobotUsuallyGoes) {
   const test::World corridor = test::bare_corridor();
   const ScanView reference = test::view_from(corridor, {0.0, 0.1, 0.0}, test::half_circle());

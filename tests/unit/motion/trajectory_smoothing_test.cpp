@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scans that follow each other closely along a line, of which the third is off.
+// The scans follow each other closely along a line, and the third is off.
 #include "motion/trajectory_smoothing.hpp"
 
 #include <gmock/gmock.h>
@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kOff = 2;
 
 struct Line {
-  /// Scans `step_m` apart, facing along `heading_rad`; the covariances are as along a corridor.
+  /// The scans are `step_m` apart and face along `heading_rad`; the covariances are as along a corridor.
   explicit Line(double step_m = 0.1, double heading_rad = 0.0) : along(Pose2{1.0, 2.0, heading_rad}) {
     Eigen::Matrix3d map_from_line = Eigen::Matrix3d::Identity();
     map_from_line.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(heading_rad).toRotationMatrix();

@@ -29,7 +29,7 @@ TEST(EvenBeams, AreAsTheStepSaysWhereLimitsAgree) {
   const double first_rad = -135 * kDegree;
   expect_beams({first_rad, 0.25 * kDegree, 135 * kDegree}, 1081, 0.25, AngleSource::kAsStated);
   expect_beams({first_rad, 0.25 * kDegree, std::nullopt}, 1081, 0.25, AngleSource::kAsStated);
-  // A full circle whose header counts the first beam twice.
+  // The header of this full circle counts the first beam twice.
   expect_beams({-kPi, kDegree, kPi}, 360, 1.0, AngleSource::kAsStated);
   expect_beams({kPi, -kDegree, -kPi}, 360, -1.0, AngleSource::kAsStated);
 }

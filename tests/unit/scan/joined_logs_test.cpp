@@ -14,7 +14,7 @@ Log log_of(std::size_t count, const std::string& format, double first_s) {
   return log;
 }
 
-TEST(JoinedLogs, HasAllPositionsInOrderAndKnowsWhereEachLogBegins) {
+TEST(JoinedLogs, HasAllScansInOrderAndKnowsWhereEachLogBegins) {
   const Log all = joined_logs({log_of(3, "carmen", 0.0), log_of(2, "rawlog", 0.0), log_of(4, "carmen", 50.0)});
   EXPECT_EQ(all.format, "carmen+rawlog");
   EXPECT_EQ(all.warnings, (std::vector<std::string>{"carmen is odd", "rawlog is odd", "carmen is odd"}));

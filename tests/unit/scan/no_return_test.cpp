@@ -26,7 +26,8 @@ constexpr double kSeen_m = 4.0;
 
 Pose2 driving(int i) { return {1.1 * std::cos(0.5 * i), 0.9 * std::sin(0.37 * i), 0.3 * i}; }
 
-/// Sweeps of one laser in a room full of boxes; what is farther than `seen_m` is kLost. The log says no maximum.
+/// Takes sweeps of one laser in a room full of boxes; readings farther than `seen_m` are kLost. The log states no
+/// maximum.
 Log sweeps(int count, const std::function<Pose2(int)>& world_from_robot = driving, double seen_m = kSeen_m,
            double noise_m = 0.01) {
   const test::World world = test::cluttered_room(3);
@@ -49,9 +50,9 @@ Log sweeps(int count, const std::function<Pose2(int)>& world_from_robot = drivin
   return log;
 }
 
-using Code = std::function<double(int)>;  ///< of the number of the sweep
+using Code = std::function<double(int)>;  ///< takes the number of the sweep
 
-/// Gives lost readings a distance; how many there are.
+/// Gives lost readings a distance, and returns how many there are.
 std::size_t say_lost(Log& log, const Code& code_m) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < log.scans.size(); ++i) {

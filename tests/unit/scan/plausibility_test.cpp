@@ -42,7 +42,7 @@ TEST(Plausibility, SaysWhatIsFoundAndWhatWasExpected) {
   EXPECT_EQ(implausibility(sweep), "a mount's x of -3e+207 m, expected at most 100 m from the robot's origin");
 }
 
-TEST(Plausibility, EveryNumberOfAScanIsLookedAt) {
+TEST(Plausibility, EveryNumberOfASweepIsChecked) {
   const std::vector<double Sweep::*> numbers{&Sweep::first_angle_rad, &Sweep::angle_step_rad, &Sweep::min_range_m,
                                              &Sweep::max_range_m, &Sweep::nominal_heading_rad};
   const std::vector<double MountPose::*> of_mount{&MountPose::x_m,     &MountPose::y_m,       &MountPose::z_m,
@@ -70,19 +70,19 @@ TEST(Plausibility, WhatIsUnusualPasses) {
   sweep.max_range_m = std::numeric_limits<float>::max();
   sweep.min_range_m = -1.0;
   EXPECT_THAT(implausibility(sweep), IsEmpty());
-  sweep.ranges_m.assign(1, 2.0F);  // has no step
+  sweep.ranges_m.assign(1, 2.0F);  // one reading has no step
   sweep.angle_step_rad = 0.0;
   EXPECT_THAT(implausibility(sweep), IsEmpty());
   sweep.ranges_m.clear();
   EXPECT_THAT(implausibility(sweep), IsEmpty());
   EXPECT_THAT(implausible_time(1.7e18), IsEmpty());  // nanoseconds
   EXPECT_THAT(implausible_time(-5.0), IsEmpty());
-  EXPECT_THAT(implausibility(Pose2{5e5, 5e6, 3.0}), IsEmpty());  // on a grid of the country
+  EXPECT_THAT(implausibility(Pose2{5e5, 5e6, 3.0}), IsEmpty());  // on the grid of a country
 }
 
-TEST(Plausibility, AScanGoesRoundTwiceAtMostAndItsBeamsAreApart) {
+TEST(Plausibility, ASweepGoesRoundTwiceAtMostAndItsBeamsAreApart) {
   Sweep sweep = half_circle();
-  sweep.angle_step_rad = 0.1;  // 180 times
+  sweep.angle_step_rad = 0.1;  // 180 beams make more than two turns
   EXPECT_THAT(implausibility(sweep), HasSubstr("18 rad, expected at most two full turns"));
   for (const double step_rad : {0.0, 1e-9, -1e-9, 1e-308}) {
     sweep.angle_step_rad = step_rad;
@@ -91,7 +91,7 @@ TEST(Plausibility, AScanGoesRoundTwiceAtMostAndItsBeamsAreApart) {
   EXPECT_THAT(implausibility(half_circle(), 1'000'001), HasSubstr("1000001 beams"));
 }
 
-TEST(Plausibility, BeamsWithAnglesAndTimesOfTheirOwnAreLookedAtOneByOne) {
+TEST(Plausibility, BeamsWithAnglesAndTimesOfTheirOwnAreCheckedOneByOne) {
   Sweep sweep;
   sweep.ranges_m.assign(3, 2.0F);
   set_beam_angles(sweep, {0.0, 0.1, 0.3});
@@ -102,7 +102,7 @@ TEST(Plausibility, BeamsWithAnglesAndTimesOfTheirOwnAreLookedAtOneByOne) {
   wrong.beam_angles_rad[1] = kNan;
   EXPECT_THAT(implausibility(wrong), HasSubstr("a beam's angle of nan rad"));
   wrong = sweep;
-  wrong.angle_step_rad = 1e-9;  // would make 300 million bearings of three beams
+  wrong.angle_step_rad = 1e-9;  // this step would make 300 million bearings of three beams
   EXPECT_THAT(implausibility(wrong), HasSubstr("at most a million steps"));
   wrong = sweep;
   wrong.beam_times_s[2] = std::numeric_limits<float>::infinity();
@@ -121,7 +121,7 @@ TEST(Plausibility, BeamsWithAnglesAndTimesOfTheirOwnAreLookedAtOneByOne) {
   EXPECT_THAT(implausibility(wrong), HasSubstr("4 beam angles, expected none or 3"));
 }
 
-TEST(Plausibility, OfAPositionTheFirstFaultIsSaid) {
+TEST(Plausibility, OfAScanTheFirstFaultIsSaid) {
   Scan scan;
   scan.sweeps = {half_circle(), half_circle()};
   EXPECT_THAT(implausibility(scan), IsEmpty());
@@ -133,7 +133,7 @@ TEST(Plausibility, OfAPositionTheFirstFaultIsSaid) {
   EXPECT_THAT(implausibility(scan), HasSubstr("timestamp of 1e+300 s"));
 }
 
-/// What throws InputError says.
+/// Returns the message of the InputError that `work` throws.
 template <class Work>
 std::string refusal(const Work& work) {
   try {
@@ -144,7 +144,7 @@ std::string refusal(const Work& work) {
   }
 }
 
-TEST(Plausibility, MappingNamesThePositionOfALogThatWasMadeByHand) {
+TEST(Plausibility, MappingNamesTheScanOfALogThatWasMadeByHand) {
   Log log;
   log.scans.resize(5);
   for (Scan& scan : log.scans) scan.sweeps = {half_circle()};

@@ -11,7 +11,7 @@
 namespace shapemap {
 namespace {
 
-/// A walk through a cluttered room of some size, its readings in units of `metres_per_unit`, in whole numbers if asked.
+/// Walks through a cluttered room of some size; readings are in units of `metres_per_unit`, in whole numbers if asked.
 Log walk(double size, double noise_m, double metres_per_unit, bool in_whole_numbers) {
   std::mt19937 rng(2);
   test::Scanner scanner;

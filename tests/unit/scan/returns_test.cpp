@@ -81,7 +81,7 @@ TEST(Returns, OfATiltedSensorAreProjectedToTheFloor) {
   const std::vector<Return> hits = returns_in_robot(sweep, {});
   ASSERT_EQ(hits.size(), 2U);
   expect_point(hits[0], std::cos(20 * kDegree), 0.0, 0);
-  expect_point(hits[1], 0.0, 2.0, 1);  // sideways, the tilt axis itself
+  expect_point(hits[1], 0.0, 2.0, 1);  // sideways, along the axis of the tilt
 }
 
 TEST(Returns, ASteepSensorHasNone) {

@@ -13,7 +13,8 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// Positions whose scans were taken at `taken_s`, one reading that grows with time, and are stamped with `times_s`.
+/// Makes scans that were taken at `taken_s`, with one reading that grows with time, and that are stamped with
+/// `times_s`.
 std::vector<Scan> at_times(const std::vector<double>& times_s, const std::vector<double>& taken_s) {
   std::vector<Scan> scans;
   for (std::size_t i = 0; i < times_s.size(); ++i) {
@@ -29,7 +30,7 @@ std::vector<Scan> at_times(const std::vector<double>& times_s, const std::vector
 
 std::vector<Scan> at_times(const std::vector<double>& times_s) { return at_times(times_s, times_s); }
 
-/// As many times, one second apart.
+/// Returns so many times, one second apart.
 std::vector<double> steady(std::size_t count) {
   std::vector<double> times_s;
   for (std::size_t i = 0; i < count; ++i) times_s.push_back(static_cast<double>(i));
@@ -69,7 +70,7 @@ TEST(Timestamps, ThatWereSwappedAreSorted) {
   for (const Scan& scan : scans) EXPECT_EQ(scan.sweeps[0].start_s, scan.timestamp_s);
 }
 
-/// As in real recordings: the computer was busy, and stamped some scans too late.
+/// In real recordings the computer was busy, and stamped some scans too late.
 TEST(Timestamps, ThatWereStampedLateDoNotChangeTheOrder) {
   std::vector<Scan> scans = at_times({0.0, 1.0, 4.5, 3.0, 4.0, 5.0, 6.0, 7.9, 7.0, 8.0}, steady(10));
   const TimestampRepairs repairs = mend_timestamps(scans);
@@ -103,7 +104,7 @@ TEST(Timestamps, ThatRepeatAreSpread) {
   EXPECT_THAT(times_of(scans), ElementsAre(0.0, 1.0, 1.25, 1.5, 1.75, 2.0, 3.0, 4.0, 5.0));
 }
 
-/// Whatever the times, they increase afterwards, no position is lost, and a second look finds nothing.
+/// Whatever the times, they increase afterwards, no scan is lost, and a second run finds nothing to mend.
 TEST(Timestamps, IncreaseAfterwardsWhateverTheyWere) {
   std::mt19937 rng(5);
   for (int run = 0; run < 300; ++run) {

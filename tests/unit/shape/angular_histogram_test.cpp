@@ -69,14 +69,14 @@ TEST(NormalisedHistogram, OfNothingIsNothingUnderAnyNorm) {
 }
 
 TEST(AngularHistogram, OfFourPointsAsWorkedOutByHand) {
-  // From the first: 5 degrees, 5 degrees (farther), 95 degrees.
+  // The first point sees 5 degrees, 5 degrees (farther) and 95 degrees.
   const Point2 a(1.0, 1.0);
   const Shape shape = shape_of_points({a, a + rotate({0.2, 0.0}, 5 * kDegree), a + rotate({0.4, 0.0}, 5 * kDegree),
                                        a + rotate({0.3, 0.0}, 95 * kDegree)});
   const auto by_maximum = histograms_of(shape, 0.45);
   ASSERT_EQ(by_maximum.size(), 4U);
   EXPECT_EQ(by_maximum[0].bins, normalised(counts_with({{0, 2}, {9, 1}}), HistogramNorm::kMaximum).bins);
-  // From the last: down to the first (275 deg), and to the others at 275 + 33.7 and 275 + 53.1 (0.5 m, too far).
+  // The last point sees the first at 275 deg, and the others at 275 + 33.7 and 275 + 53.1 (0.5 m, too far).
   EXPECT_EQ(by_maximum[3].bins, normalised(counts_with({{27, 1}, {30, 1}}), HistogramNorm::kMaximum).bins);
   const auto by_count = histograms_of(shape, 0.45, 0.0, HistogramNorm::kCount);
   EXPECT_EQ(by_count[0].bins[0], 168);
@@ -158,7 +158,7 @@ TEST(AngularHistogram, EqualsBruteForceOnRandomShapes) {
 
 TEST(PointIndex, FindsWhatBruteForceFinds) {
   std::mt19937 rng(4);
-  std::uniform_int_distribution<int> cell(0, 12);  // a lattice, where many distances are exactly the radius
+  std::uniform_int_distribution<int> cell(0, 12);  // on a lattice, many distances are exactly the radius
   std::vector<Point2> points;
   for (int i = 0; i < 300; ++i) {
     const int column = cell(rng);

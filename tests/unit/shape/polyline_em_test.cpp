@@ -19,12 +19,11 @@ constexpr double kBeamSpacing_m = 0.01;
 
 PolylineOptions options_for_test() { return test::paper_options().polylines; }
 
-/// Points from `from_m` to `to_m`, both included, with noise across and along.
-void add_wall(std::vector<ScanPoint>& points, const Point2& from_m, const Point2& to_m, int count, double noise_m,
-              std::mt19937& rng) {
+/// Adds points along a wall, both ends included, with noise across and along.
+void add_wall(std::vector<ScanPoint>& points, const test::Wall& wall, int count, double noise_m, std::mt19937& rng) {
   std::normal_distribution<double> noise(0.0, 1.0);
   for (int i = 0; i < count; ++i) {
-    const Point2 p = from_m + (to_m - from_m) * i / std::max(count - 1, 1);
+    const Point2 p = wall.start_m + (wall.end_m - wall.start_m) * i / std::max(count - 1, 1);
     points.push_back({p + noise_m * Point2(noise(rng), noise(rng)), kBeamSpacing_m});
   }
 }
@@ -32,7 +31,7 @@ void add_wall(std::vector<ScanPoint>& points, const Point2& from_m, const Point2
 std::vector<ScanPoint> one_wall(const Point2& from_m, const Point2& to_m, int count) {
   std::mt19937 rng(1);
   std::vector<ScanPoint> points;
-  add_wall(points, from_m, to_m, count, 0.0, rng);
+  add_wall(points, {from_m, to_m}, count, 0.0, rng);
   return points;
 }
 
@@ -47,7 +46,7 @@ TEST(LineSegment, DistanceIsToItsEndsBeyondThem) {
 TEST(SurfaceRuns, BreakWhereNeighboursAreFartherApartThanTheGap) {
   PolylineOptions options;
   options.run_gap_m = 0.20;
-  options.run_gap_beams = 5.0;  // and 5 times 1 cm: 0.25 m
+  options.run_gap_beams = 5.0;  // and 5 times 1 cm make 0.25 m
   std::vector<ScanPoint> points;
   for (const double x_m : {0.0, 0.1, 0.2, 0.44, 0.70, 0.80}) points.push_back({{x_m, 0.0}, kBeamSpacing_m});
   const auto runs = surface_runs(points, options);
@@ -66,8 +65,8 @@ TEST(FitPolylines, TwoNoisyWallsWithACornerAreTwoSegments) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 rng(seed);
     std::vector<ScanPoint> points;
-    add_wall(points, {2.0, -2.0}, {2.0, 1.0}, 150, 0.005, rng);
-    add_wall(points, {1.98, 1.0}, {-1.0, 1.0}, 150, 0.005, rng);
+    add_wall(points, {{2.0, -2.0}, {2.0, 1.0}}, 150, 0.005, rng);
+    add_wall(points, {{1.98, 1.0}, {-1.0, 1.0}}, 150, 0.005, rng);
     const PolylineFit fit = fit_polylines(points, options_for_test());
     ASSERT_EQ(fit.segments.size(), 2U) << seed;
     EXPECT_THAT(fit.segments[0].tangent_rad(), IsNearAngle(90 * kDegree, 1 * kDegree)) << seed;
@@ -82,8 +81,8 @@ TEST(FitPolylines, StrongNoiseLeavesTheWallsTheirDirectionsAndAddsOnlySlivers) {
   for (unsigned seed = 0; seed < 30; ++seed) {
     std::mt19937 rng(seed);
     std::vector<ScanPoint> points;
-    add_wall(points, {2.0, -2.0}, {2.0, 1.0}, 150, 0.01, rng);
-    add_wall(points, {1.98, 1.0}, {-1.0, 1.0}, 150, 0.01, rng);
+    add_wall(points, {{2.0, -2.0}, {2.0, 1.0}}, 150, 0.01, rng);
+    add_wall(points, {{1.98, 1.0}, {-1.0, 1.0}}, 150, 0.01, rng);
     int num_walls = 0;
     for (const LineSegment& segment : fit_polylines(points, options_for_test()).segments) {
       if (segment.length_m() < 0.15) continue;
@@ -105,8 +104,8 @@ TEST(FitPolylines, AnExactWallIsFoundExactly) {
 TEST(FitPolylines, AGapInAWallSplitsIt) {
   std::mt19937 rng(3);
   std::vector<ScanPoint> points;
-  add_wall(points, {2.0, -2.0}, {2.0, -0.5}, 80, 0.005, rng);
-  add_wall(points, {2.0, 0.4}, {2.0, 2.0}, 80, 0.005, rng);
+  add_wall(points, {{2.0, -2.0}, {2.0, -0.5}}, 80, 0.005, rng);
+  add_wall(points, {{2.0, 0.4}, {2.0, 2.0}}, 80, 0.005, rng);
   const PolylineFit fit = fit_polylines(points, options_for_test());
   ASSERT_EQ(fit.segments.size(), 2U);
   EXPECT_NEAR(fit.segments[0].end_m.y(), -0.5, 0.03);
@@ -114,12 +113,12 @@ TEST(FitPolylines, AGapInAWallSplitsIt) {
 }
 
 TEST(FitPolylines, AGapBehindAnObstacleSplitsTheWallToo) {
-  // In scan order: wall, the front of a post before it, wall again. The support of the wall has the hole.
+  // In scan order there are the wall, the front of a post before it, and the wall again, whose support has a hole.
   std::mt19937 rng(4);
   std::vector<ScanPoint> points;
-  add_wall(points, {2.0, -2.0}, {2.0, -0.4}, 80, 0.0, rng);
-  add_wall(points, {1.0, -0.2}, {1.0, 0.2}, 30, 0.0, rng);
-  add_wall(points, {2.0, 0.4}, {2.0, 2.0}, 80, 0.0, rng);
+  add_wall(points, {{2.0, -2.0}, {2.0, -0.4}}, 80, 0.0, rng);
+  add_wall(points, {{1.0, -0.2}, {1.0, 0.2}}, 30, 0.0, rng);
+  add_wall(points, {{2.0, 0.4}, {2.0, 2.0}}, 80, 0.0, rng);
   const PolylineFit fit = fit_polylines(points, options_for_test());
   ASSERT_EQ(fit.segments.size(), 3U);
   EXPECT_NEAR(fit.segments[0].length_m(), 1.6, 1e-6);
@@ -127,8 +126,8 @@ TEST(FitPolylines, AGapBehindAnObstacleSplitsTheWallToo) {
   EXPECT_NEAR(fit.segments[2].length_m(), 1.6, 1e-6);
 }
 
-TEST(FitPolylines, CollinearPiecesThatAreCloseEndToEndAreOneSegment) {
-  // A ripple that the simplification follows and EM sees through.
+TEST(FitPolylines, CollinearSegmentsThatAreCloseEndToEndAreMerged) {
+  // The simplification follows the ripple, and EM sees through it.
   std::vector<ScanPoint> points;
   for (int i = 0; i <= 300; ++i) {
     const double y_m = -1.5 + 0.01 * i;
@@ -147,9 +146,9 @@ TEST(FitPolylines, ADoorRecessIsNotSwallowedByItsWall) {
   for (unsigned seed = 0; seed < 10; ++seed) {
     std::mt19937 rng(seed);
     std::vector<ScanPoint> points;
-    add_wall(points, {2.0, -2.0}, {2.0, -0.45}, 150, 0.005, rng);
-    add_wall(points, {2.0 + kDepth_m, -0.44}, {2.0 + kDepth_m, 0.44}, 88, 0.005, rng);
-    add_wall(points, {2.0, 0.45}, {2.0, 2.0}, 150, 0.005, rng);
+    add_wall(points, {{2.0, -2.0}, {2.0, -0.45}}, 150, 0.005, rng);
+    add_wall(points, {{2.0 + kDepth_m, -0.44}, {2.0 + kDepth_m, 0.44}}, 88, 0.005, rng);
+    add_wall(points, {{2.0, 0.45}, {2.0, 2.0}}, 150, 0.005, rng);
     const PolylineFit fit = fit_polylines(points, options_for_test());
     // The middle of the door has a segment of its own, at its depth and along it.
     const LineSegment& door = fit.segments[static_cast<std::size_t>(fit.closest_segment[150 + 44])];
@@ -162,9 +161,9 @@ TEST(FitPolylines, ADoorRecessIsNotSwallowedByItsWall) {
 TEST(FitPolylines, ALongWallDoesNotOutvoteAShortRecess) {
   std::mt19937 rng(2);
   std::vector<ScanPoint> points;
-  add_wall(points, {2.0, -4.0}, {2.0, -0.11}, 390, 0.0, rng);
-  add_wall(points, {2.07, -0.10}, {2.07, 0.10}, 21, 0.0, rng);
-  add_wall(points, {2.0, 0.11}, {2.0, 4.0}, 390, 0.0, rng);
+  add_wall(points, {{2.0, -4.0}, {2.0, -0.11}}, 390, 0.0, rng);
+  add_wall(points, {{2.07, -0.10}, {2.07, 0.10}}, 21, 0.0, rng);
+  add_wall(points, {{2.0, 0.11}, {2.0, 4.0}}, 390, 0.0, rng);
   const PolylineFit fit = fit_polylines(points, options_for_test());
   const LineSegment& recess = fit.segments[static_cast<std::size_t>(fit.closest_segment[390 + 10])];
   EXPECT_LT(recess.distance_m({2.07, 0.0}), 0.01);
@@ -175,9 +174,9 @@ TEST(FitPolylines, AWallEndsWhereItsSupportHasAHole) {
   // The first polyline runs straight past a deep recess, whose points it then cannot explain.
   std::mt19937 rng(2);
   std::vector<ScanPoint> points;
-  add_wall(points, {2.0, -2.0}, {2.0, -0.45}, 150, 0.0, rng);
-  add_wall(points, {2.12, -0.44}, {2.12, 0.44}, 88, 0.0, rng);
-  add_wall(points, {2.0, 0.45}, {2.0, 2.0}, 150, 0.0, rng);
+  add_wall(points, {{2.0, -2.0}, {2.0, -0.45}}, 150, 0.0, rng);
+  add_wall(points, {{2.12, -0.44}, {2.12, 0.44}}, 88, 0.0, rng);
+  add_wall(points, {{2.0, 0.45}, {2.0, 2.0}}, 150, 0.0, rng);
   PolylineOptions options = options_for_test();
   options.simplify_tolerance_m = 0.30;
   for (const LineSegment& segment : fit_polylines(points, options).segments) {
@@ -205,7 +204,7 @@ TEST(FitPolylines, SegmentsPointAlongTheScan) {
   const SweepShape shape = sweep_shape(scan.sweeps[0], 0, {}, options_for_test(), test::paper_options().shape);
   ASSERT_GE(shape.polylines.segments.size(), 8U);
   for (const LineSegment& segment : shape.polylines.segments) {
-    // Counterclockwise about the sensor, at the origin.
+    // The segments run counterclockwise about the sensor, at the origin.
     EXPECT_GT(segment.start_m.x() * segment.end_m.y() - segment.start_m.y() * segment.end_m.x(), 0.0);
   }
 }
@@ -239,8 +238,8 @@ TEST(FitPolylines, ClosestSegmentIsTheNearestOfAll) {
 TEST(FitPolylines, EndsBeforeTheLimitAndMoreRoundsChangeNothing) {
   std::mt19937 rng(6);
   std::vector<ScanPoint> points;
-  add_wall(points, {2.0, -2.0}, {2.0, 1.0}, 150, 0.01, rng);
-  add_wall(points, {1.98, 1.0}, {-1.0, 1.0}, 150, 0.01, rng);
+  add_wall(points, {{2.0, -2.0}, {2.0, 1.0}}, 150, 0.01, rng);
+  add_wall(points, {{1.98, 1.0}, {-1.0, 1.0}}, 150, 0.01, rng);
   PolylineOptions options = options_for_test();
   options.em_max_iterations = 500;
   const PolylineFit stable = fit_polylines(points, options);

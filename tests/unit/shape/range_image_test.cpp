@@ -32,7 +32,7 @@ double bearing_rad(const RangeImage& image, std::size_t beam) {
   return image.first_bearing_rad + static_cast<double>(beam) * image.step_rad;
 }
 
-/// How far the nearest beam points away from a bearing, by looking at all of them.
+/// Returns how far the nearest of all beams points away from a bearing.
 double off_nearest_rad(const RangeImage& image, double bearing) {
   double nearest_rad = 2.0 * kPi;
   for (std::size_t k = 0; k < image.beams.size(); ++k) {
@@ -45,7 +45,7 @@ void expect_nearest(const RangeImage& image, double bearing) {
   constexpr double kRounding_rad = 1e-9;
   const double off_rad = off_nearest_rad(image, bearing);
   const int beam = image.beam_at(bearing);
-  if (std::abs(off_rad - 0.5 * image.step_rad) < kRounding_rad) return;  // on the border
+  if (std::abs(off_rad - 0.5 * image.step_rad) < kRounding_rad) return;  // the bearing is on the border of two beams
   if (off_rad > 0.5 * image.step_rad) {
     EXPECT_EQ(beam, -1) << bearing;
     return;
@@ -55,7 +55,7 @@ void expect_nearest(const RangeImage& image, double bearing) {
   EXPECT_NEAR(angle_between(bearing, bearing_rad(image, static_cast<std::size_t>(beam))), off_rad, kRounding_rad);
 }
 
-TEST(RangeImage, FindsTheBeamThatALookAtAllOfThemFinds) {
+TEST(RangeImage, FindsTheBeamThatASearchOfAllFinds) {
   std::mt19937 rng(1);
   std::uniform_real_distribution<double> angle(-4 * kPi, 4 * kPi);
   for (int round = 0; round < 300; ++round) {
@@ -63,11 +63,11 @@ TEST(RangeImage, FindsTheBeamThatALookAtAllOfThemFinds) {
     const auto most = static_cast<std::size_t>(2 * kPi / step_rad);
     const RangeImage image =
         empty_image(angle(rng), step_rad, std::uniform_int_distribution<std::size_t>(1, most)(rng));
-    for (int look = 0; look < 30; ++look) expect_nearest(image, angle(rng));
+    for (int i = 0; i < 30; ++i) expect_nearest(image, angle(rng));
   }
 }
 
-TEST(RangeImage, LooksAllAroundWithoutASeam) {
+TEST(RangeImage, SeesAllAroundWithoutASeam) {
   std::mt19937 rng(2);
   std::uniform_real_distribution<double> angle(-4 * kPi, 4 * kPi);
   for (const std::size_t num_beams : {1U, 2U, 7U, 359U, 360U, 720U, 1081U, 4096U}) {
@@ -87,7 +87,7 @@ TEST(RangeImage, LooksAllAroundWithoutASeam) {
 }
 
 TEST(RangeImage, WithTheFirstBearingTwiceFindsOneOfThem) {
-  const RangeImage image = empty_image(-kPi, kDegree, 361);  // as scanners over 360 degrees, both ends included
+  const RangeImage image = empty_image(-kPi, kDegree, 361);  // such scanners over 360 degrees include both ends
   for (int k = -720; k <= 720; ++k) expect_nearest(image, (k + 0.3) * kDegree);
 }
 
@@ -154,8 +154,8 @@ TEST(RangeImage, NormalsOfWallsPointToTheSensor) {
   EXPECT_GE(num_across, 710) << "of 720; corners may be either way";
 }
 
-/// Beams that are moved a little off their even angles see the same: nearly every bearing has its hit, and what a beam
-/// saw is in the bearing that it fell into, or in the one beside it.
+/// Beams that are moved a little off their even angles see the same: nearly every bearing has its return, and the
+/// return of a beam is in the bearing that it fell into, or in the one beside it.
 TEST(RangeImage, OfUnevenBeamsHasNearlyEveryBearing) {
   std::mt19937 rng(6);
   std::uniform_real_distribution<double> aside(-0.4, 0.4);
@@ -191,7 +191,7 @@ TEST(RangeImage, OfNoBeamsHasNone) {
   EXPECT_TRUE(image_of(sweep).beams.empty());
 }
 
-/// What beam_at() means, by turning on until the bearing is there.
+/// Finds the beam as beam_at() defines it, by turning on until the bearing is there.
 int beam_by_turning(const RangeImage& image, double bearing_rad) {
   const double beams_in_turn = 2.0 * kPi * (1.0 / image.step_rad);
   double beam = (bearing_rad - image.first_bearing_rad) * (1.0 / image.step_rad) + 0.5;

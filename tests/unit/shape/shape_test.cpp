@@ -14,7 +14,7 @@ namespace {
 using test::IsNearAngle;
 using test::IsNearPoint;
 
-/// A wall 2 m ahead and `length_m` long, as one laser sees it.
+/// One laser sees a wall 2 m ahead that is `length_m` long.
 Scan before_a_wall(double length_m) {
   const test::World wall{{{2.0, -length_m / 2}, {2.0, length_m / 2}}};
   test::Scanner scanner;
@@ -45,14 +45,14 @@ TEST(Shape, WithTooManyPointsIsThinnedOutEvenly) {
   MappingOptions options = test::paper_options();
   options.shape.spacing_m = 0.01;
   options.shape.max_points = 100;
-  const Shape shape = test::shape_of(before_a_wall(2.0), options);  // 200 points without the limit
+  const Shape shape = test::shape_of(before_a_wall(2.0), options);  // there are 200 points without the limit
   ASSERT_EQ(shape.size(), 100U);
   for (std::size_t i = 1; i < shape.size(); ++i) {
     EXPECT_NEAR((shape.points[i].p_m - shape.points[i - 1].p_m).norm(), 0.02, 0.002) << i;
   }
 }
 
-TEST(Shape, AShortPieceGivesItsMiddle) {
+TEST(Shape, AShortSegmentGivesItsMiddle) {
   MappingOptions options = test::paper_options();
   options.shape.spacing_m = 1.0;
   const Shape shape = test::shape_of(before_a_wall(0.3), options);
@@ -85,7 +85,7 @@ TEST(Shape, DoesNotDependOnTheDensityOfBeams) {
   EXPECT_NEAR(static_cast<double>(a.size()), static_cast<double>(b.size()), 0.05 * static_cast<double>(b.size()));
 }
 
-TEST(Shape, PointsKnowTheirSubScanAndComeInItsOrder) {
+TEST(Shape, PointsKnowTheirSweepAndComeInItsOrder) {
   test::Scanner scanner;
   scanner.num_sweeps = 4;
   scanner.num_beams = 401;
@@ -98,7 +98,7 @@ TEST(Shape, PointsKnowTheirSubScanAndComeInItsOrder) {
     EXPECT_GE(point.sweep, before);
     before = point.sweep;
     ++points_of.at(static_cast<std::size_t>(point.sweep));
-    // Each looks 50 degrees to either side of its heading.
+    // Each sweep sees 50 degrees to either side of its heading.
     const double bearing_rad = std::atan2(point.p_m.y(), point.p_m.x());
     EXPECT_LT(angle_between(bearing_rad, point.sweep * 90 * kDegree), 51 * kDegree);
   }
@@ -115,7 +115,7 @@ TEST(Shape, LiesOnTheWalls) {
   }
 }
 
-TEST(Shape, OfAPositionWithoutReturnsIsEmpty) {
+TEST(Shape, OfAScanWithoutReturnsIsEmpty) {
   Scan blind = before_a_wall(2.0);
   for (float& range_m : blind.sweeps[0].ranges_m) range_m = std::nanf("");
   const Shape shape = test::shape_of(blind, test::paper_options());
@@ -143,7 +143,7 @@ TEST(MovedShape, TangentsWrapToHalfATurn) {
   }
 }
 
-TEST(MovedShape, AppliesTheSubScanPosesFirst) {
+TEST(MovedShape, AppliesTheSweepPosesFirst) {
   const Shape shape{{{{1.0, 0.0}, 0.1, 0}, {{0.0, 1.0}, 0.2, 1}, {{-1.0, 0.0}, 0.3, 1}}, 2};
   const std::vector<Pose2> sweep_poses{{0.01, 0.02, 0.03}, {-0.04, 0.05, -0.06}};
   const Pose2 b_from_a{2.0, 1.0, 0.5};

@@ -15,7 +15,7 @@ namespace {
 
 using Indices = std::vector<std::size_t>;
 
-/// What every answer must have: ascending indices of given points, from the first place to the last one.
+/// Every answer must have ascending indices of given points, from the first to the last distinct one.
 void expect_well_formed(const std::vector<Point2>& points, const Indices& kept) {
   ASSERT_FALSE(kept.empty());
   EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
@@ -25,7 +25,7 @@ void expect_well_formed(const std::vector<Point2>& points, const Indices& kept) 
   EXPECT_EQ(points[kept.back()], points.back());
 }
 
-/// How far the point that lies farthest from the simple polyline is from the stretch that replaces it.
+/// Returns the largest distance of a point from the stretch of the simple polyline that replaces it.
 double largest_distance_m(const std::vector<Point2>& points, const Indices& kept) {
   double largest_m = 0.0;
   for (std::size_t v = 0; v + 1 < kept.size(); ++v) {
@@ -106,7 +106,7 @@ TEST(SimplifyPolyline, TakesALoopThatEndsWhereItBegan) {
 }
 
 TEST(SimplifyPolyline, KeepsDroppedPointsNearTheLineOnRandomSurfaces) {
-  // Steps that always advance, so that lines do not cross themselves and the cost is the distance.
+  // The steps always advance, so that lines do not cross themselves and the cost is the distance.
   constexpr double kTolerance_m = 0.05;
   for (unsigned seed = 0; seed < 40; ++seed) {
     std::mt19937 rng(seed);
@@ -129,7 +129,7 @@ TEST(SimplifyPolyline, KeepsDroppedPointsNearTheLineOnRandomSurfaces) {
 TEST(SimplifyPolyline, ToleratesAnyScribble) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     std::mt19937 rng(seed);
-    std::uniform_int_distribution<int> cell(0, 6);  // a coarse lattice: crossings, repeats and overlaps abound
+    std::uniform_int_distribution<int> cell(0, 6);  // on a coarse lattice, crossings, repeats and overlaps abound
     std::vector<Point2> points;
     for (int i = 0; i < 30; ++i) points.emplace_back(0.1 * cell(rng), 0.1 * cell(rng));
     expect_well_formed(points, simplify_polyline(points, 0.05));

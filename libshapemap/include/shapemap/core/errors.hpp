@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <string>
 
-/// All that the library throws on purpose. Each message is one line that a user can act on: which file,
-/// which line or offset, what was found and what was expected.
+/// The library throws no other exceptions on purpose. Each message is one line that a user can act on: it names the
+/// file and the line or offset, what was found and what was expected.
 namespace shapemap {
 
 struct Error : std::runtime_error {
@@ -27,7 +27,7 @@ struct OutputError : Error {
   using Error::Error;
 };
 
-/// The observer asked to stop.
+/// The observer asked the run to stop.
 struct Interrupted : Error {
   Interrupted() : Error("interrupted") {}
 };

@@ -5,9 +5,9 @@
 
 namespace shapemap {
 
-/// How a long computation runs; nothing of it changes a result.
+/// Says how a long computation runs; nothing of it changes a result.
 struct Execution {
-  int threads = 1;  ///< 0: one per processor
+  int threads = 1;  ///< 0 takes one thread per processor
   RunObserver& observer;
 };
 

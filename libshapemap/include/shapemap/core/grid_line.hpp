@@ -5,8 +5,8 @@
 
 namespace shapemap {
 
-/// Bresenham's line: calls `visit(cell)` for each cell from `from` on, up to the one before `to`, as long as that
-/// returns true.
+/// Follows Bresenham's line (Bresenham 1965): calls `visit(cell)` for each cell from `from` up to the one before `to`,
+/// as long as `visit` returns true.
 template <class Visit>
 void while_cell_before(Eigen::Vector2i from, const Eigen::Vector2i& to, Visit&& visit) {
   const Eigen::Vector2i step(from.x() < to.x() ? 1 : -1, from.y() < to.y() ? 1 : -1);
@@ -26,7 +26,7 @@ void while_cell_before(Eigen::Vector2i from, const Eigen::Vector2i& to, Visit&& 
   }
 }
 
-/// The same for all of these cells.
+/// Calls `visit(cell)` for all of these cells, whatever it returns.
 template <class Visit>
 void for_each_cell_before(const Eigen::Vector2i& from, const Eigen::Vector2i& to, Visit&& visit) {
   while_cell_before(from, to, [&](const Eigen::Vector2i& cell) {

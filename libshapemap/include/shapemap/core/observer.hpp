@@ -6,15 +6,16 @@
 
 namespace shapemap {
 
-/// How a caller watches and stops a long run; the library itself never prints. Calls come from one thread.
+/// A caller watches and stops a long run through an observer; the library itself never prints. All calls come from one
+/// thread.
 struct RunObserver {
   virtual ~RunObserver() = default;
-  /// What begins now; on_progress() counts anew from here. Some stages have no progress.
+  /// A stage begins, and on_progress() counts anew from here. Some stages report no progress.
   virtual void on_stage(std::string_view /*stage*/) {}
   virtual void on_progress(std::size_t /*done*/, std::size_t /*total*/) {}
   virtual void on_warning(std::string_view /*message*/) {}
-  /// Asked before each position and between the steps of its alignment; false ends the run with what has been mapped
-  /// so far.
+  /// The run asks this before each scan and between the steps of its matching; false ends the run with what has been
+  /// mapped so far.
   virtual bool keep_going() { return true; }
 };
 

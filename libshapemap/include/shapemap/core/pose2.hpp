@@ -11,8 +11,8 @@ namespace shapemap {
 
 using Point2 = Eigen::Vector2d;
 
-/// A rigid motion of the plane. A variable named `b_from_a` takes coordinates in frame a to frame b,
-/// so that `c_from_b * b_from_a` reads as `c_from_a`.
+/// A pose is a rigid motion of the plane. A variable named `b_from_a` takes coordinates in frame a to frame b, so that
+/// `c_from_b * b_from_a` reads as `c_from_a`.
 struct Pose2 {
   double x_m = 0.0;
   double y_m = 0.0;
@@ -21,11 +21,11 @@ struct Pose2 {
   Point2 translation() const { return {x_m, y_m}; }
 };
 
-/// Stands where there is no pose.
+/// This value stands where there is no pose.
 inline constexpr Pose2 kNoPose{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
                                std::numeric_limits<double>::quiet_NaN()};
 
-/// A rotation whose sine and cosine are kept, to turn many points.
+/// A rotation that keeps its sine and cosine, for turning many points.
 class Turn {
  public:
   explicit Turn(double angle_rad) : cos_(std::cos(angle_rad)), sin_(std::sin(angle_rad)) {}
@@ -52,7 +52,7 @@ inline Pose2 inverse(const Pose2& b_from_a) {
   return {t.x(), t.y(), wrap_angle(-b_from_a.theta_rad)};
 }
 
-/// Whether a motion is shorter than `metres` and turns by less than `radians`.
+/// Says whether a motion is shorter than `metres` and turns by less than `radians`.
 inline bool is_within(const Pose2& motion, double metres, double radians) {
   return motion.translation().norm() < metres && std::abs(motion.theta_rad) < radians;
 }

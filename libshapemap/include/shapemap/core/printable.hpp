@@ -5,17 +5,17 @@
 #include <string>
 #include <string_view>
 
-/// The only way of text that files and users give to a terminal, or into a message that may reach one.
+/// Text that comes from files and users reaches a terminal, or a message that may reach one, only through printable().
 namespace shapemap {
 
-/// Of one line that is shown. A name that is longer says nothing more.
+/// A line that is shown has at most so many bytes, since a longer name says nothing more.
 inline constexpr std::size_t kMostShown = 1000;
-/// Of a name within a line.
+/// A name within a line has at most so many bytes.
 inline constexpr std::size_t kMostNameShown = 100;
 
-/// `text` as one line of valid UTF-8 that does nothing to a terminal: control characters (C0, DEL, C1), separators of
-/// lines, marks that change the direction of writing and bytes that are no UTF-8 become `\xNN`, one for each byte. What
-/// is longer than `most` bytes loses its middle, since both ends of a message say what is wrong.
+/// Returns `text` as one line of valid UTF-8 that does nothing to a terminal: each byte of control characters (C0, DEL,
+/// C1), line separators, marks of writing direction and invalid UTF-8 becomes `\xNN`. A text longer than `most` bytes
+/// loses its middle, since both ends of a message say what is wrong.
 std::string printable(std::string_view text, std::size_t most = kMostShown);
 
 }  // namespace shapemap

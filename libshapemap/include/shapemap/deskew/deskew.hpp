@@ -5,19 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "shapemap/core/observer.hpp"
+#include "shapemap/core/execution.hpp"
 #include "shapemap/core/options.hpp"
 #include "shapemap/scan/returns.hpp"
 #include "shapemap/scan/scan.hpp"
 
-/// A rolling laser sends its beams one after the other while the robot moves, which bends each sweep. Here sweeps are
-/// straightened by the motion that they tell of themselves, without odometry.
+/// A rolling laser sends its beams one after the other while the robot moves, which bends each sweep. Deskewing
+/// straightens sweeps by the motion that the sweeps themselves reveal, without odometry.
 namespace shapemap {
 
 enum class Deskew {
-  kAuto,  ///< where the scans go together better for it
+  kAuto,  ///< where scans then match better
   kOff,
-  kOn,  ///< wherever the motion can be told
+  kOn,  ///< wherever the motion can be estimated
 };
 
 template <>
@@ -42,28 +42,34 @@ struct DeskewOptions {
   }
 };
 
-/// What was done about the sweeps of one log.
+/// A verdict tells what deskewing did to the sweeps of one session.
 struct SweepVerdict {
   bool straightened = false;
-  double period_s = 0.0;            ///< from one sweep to the next
-  double sweep_time_s = 0.0;        ///< that was taken to straighten; 0: none
-  bool told = false;                ///< the log itself tells when its beams were sent
+  double period_s = 0.0;            ///< time from one sweep to the next
+  double sweep_time_s = 0.0;        ///< sweep time that was used for straightening; 0 is none
+  bool told = false;                ///< the log states the times of the beams
   std::size_t num_judged = 0;       ///< stretches of fast turning that were tried with and without straightening
-  std::size_t num_better = 0;       ///< of these, those that went together better for it
-  double misfit_before_m = 0.0;     ///< of successive scans there, as they are
-  double misfit_after_m = 0.0;      ///< and straightened
-  std::size_t num_sweeps = 0;       ///< that were straightened
-  std::size_t num_left = 0;         ///< whose motion could not be told
+  std::size_t num_better = 0;       ///< number of these stretches that match better when straightened
+  double misfit_before_m = 0.0;     ///< misfit of successive scans on these stretches, as recorded
+  double misfit_after_m = 0.0;      ///< misfit after straightening
+  std::size_t num_sweeps = 0;       ///< number of straightened sweeps
+  std::size_t num_left = 0;         ///< number of sweeps whose motion could not be estimated
   std::size_t num_beams_twice = 0;  ///< beams left out where a sweep went round more than once
   std::string text;                 ///< one line for people
 };
 
-/// The log with its sweeps as they would be if all beams of one had been sent at its stamp. A part of it is given back
-/// bit for bit where there is nothing to straighten: stamps that say nothing, scans that are far apart, a robot that
-/// stands. `every`: that manieth scan of the recording is there, so that a laser goes round that often from one to the
-/// next. One verdict for each log that was joined. Same input and options give the same bits for any number of
-/// threads. Throws Interrupted when the observer asks to stop.
-Log straightened(Log log, const ReturnOptions& returns, const DeskewOptions& options, int every, int threads,
-                 RunObserver& observer, std::vector<SweepVerdict>& verdicts);
+/// Straightening gives the log, and a verdict on each of its sessions.
+struct StraightenedLog {
+  Log log;
+  std::vector<SweepVerdict> verdicts;  ///< in the order of the sessions
+};
+
+/// Returns the log with its sweeps as if all beams of a sweep had been sent at its stamp. A session is returned bit for
+/// bit where there is nothing to straighten: stamps that say nothing, scans that are far apart, a robot that stands.
+/// The log holds only every n-th scan of its recording, n being `every`, so that a laser goes round n times from one
+/// scan to the next. The same input and options give the same bits for any number of threads. Throws Interrupted when
+/// the observer asks to stop.
+StraightenedLog straightened(Log log, const ReturnOptions& returns, const DeskewOptions& options, int every,
+                             const Execution& execution);
 
 }  // namespace shapemap

@@ -12,9 +12,9 @@
 
 namespace shapemap {
 
-/// What scans that contradict the rest of the map draw.
+/// This choice decides what scans draw that contradict the rest of the map.
 enum class Contradicting {
-  kFillGaps,  ///< only where no other scan has looked, up to the first surface of theirs
+  kFillGaps,  ///< only where no other scan has seen anything, up to the first surface of theirs
   kAsOthers,
 };
 
@@ -42,24 +42,24 @@ struct OccupancyGridOptions {
   }
 };
 
-/// Occupancy probabilities on a grid. Row 0 is the top of the picture (largest y), as in ROS map_server.
+/// The grid holds occupancy probabilities. Row 0 is the top of the picture (largest y), as in ROS map_server.
 struct OccupancyGrid {
   double resolution_m = 0.0;
   Point2 origin_m{0.0, 0.0};  ///< lower left corner of the lower left cell, in the map frame
   int width_cells = 0;
   int height_cells = 0;
   std::vector<std::uint8_t> grey;  ///< row-major; 0 occupied, 255 free, 127 or 128 unknown
-  std::size_t num_returns = 0;     ///< of all scans that were drawn
-  std::size_t num_outside = 0;     ///< of these, those that lie outside of the picture
+  std::size_t num_returns = 0;     ///< returns of all scans that were drawn
+  std::size_t num_outside = 0;     ///< number of these that lie outside of the picture
 
-  /// Column and row of a point, also outside of the grid.
+  /// Returns the column and row of a point, also outside of the grid.
   Eigen::Vector2i pixel_at(const Point2& p_in_map_m) const;
 };
 
-/// Ray-traced occupancy grid of the placed positions, built with MRPT's grid map. Those that contradict the rest are
-/// drawn last. The grid ends where the map does: a few far returns that would make it many times larger lie outside,
-/// and their beams are drawn up to its rim, unless `options.draw_all`. Throws OutputError when the map would have more
-/// than 400 million cells.
+/// Builds the ray-traced occupancy grid of placed scans with MRPT's grid map. Scans that contradict the rest are drawn
+/// last. A few far returns that would make the grid many times larger lie outside, and their beams are drawn up to its
+/// rim, unless `options.draw_all`. Throws OutputError when there are no scans or the map would have more than 400
+/// million cells, and ConfigError when an option is out of its range.
 OccupancyGrid build_occupancy_grid(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns,
                                    const OccupancyGridOptions& options);
 

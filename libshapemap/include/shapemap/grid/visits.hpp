@@ -8,9 +8,9 @@
 
 namespace shapemap {
 
-/// Scans that follow each other from nearly the same place make one look: they see the same, and err alike, so that
-/// they are no evidence for each other. The result is the index of the first scan of each look, and at the end the
-/// number of scans.
+/// Scans that follow each other from nearly the same place make one visit: they see the same and err alike, so that
+/// they are no evidence for each other. Returns the index of the first scan of each visit and, at the end, the number
+/// of scans.
 std::vector<std::size_t> starts_of_visits(const std::vector<PlacedScan>& placed);
 
 }  // namespace shapemap

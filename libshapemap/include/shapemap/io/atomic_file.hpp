@@ -5,35 +5,36 @@
 
 namespace shapemap {
 
-/// A file that appears whole or not at all: write to `temporary_path()`, then `commit()`, which flushes to disk and
+/// The file appears whole or not at all: write to `temporary_path()`, then `commit()`, which flushes it to disk and
 /// renames it to the final name. Without a commit, the temporary file is removed and an existing file stays as it was.
 class AtomicFile {
  public:
-  /// What commit() does when a file has the final name already.
+  /// The rule for commit() when a file has the final name already.
   enum class IfExists { kReplace, kFail };
 
-  /// Throws OutputError when the folder does not exist or cannot be written to. The temporary file lies in the same
-  /// folder and keeps the ending of `path`, from which image writers choose their format.
+  /// Creates the temporary file in the same folder; it keeps the ending of `path`, from which image writers choose
+  /// their format. Throws OutputError when the folder does not exist or cannot be written to.
   explicit AtomicFile(std::string path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   const std::string& temporary_path() const { return temporary_path_; }
-  /// Throws OutputError when the content did not reach the disk, or the final name is taken and may not be.
+  /// Throws OutputError when the content did not reach the disk, or when the final name is taken and must not be
+  /// replaced.
   void commit(IfExists rule = IfExists::kReplace);
-  /// Takes a commit back: what had the final name before has it again. For files that go together. Does nothing without
-  /// a commit, and no more can be taken back after settle(), or where the file system cannot exchange two files.
+  /// Undoes a commit, so that files that go together appear together: what had the final name before has it again. Does
+  /// nothing without a commit, after settle(), or where the file system cannot exchange two files.
   void roll_back();
-  /// Removes what was replaced, which is kept until then for roll_back(). The destructor does it as well.
+  /// Removes the replaced file, which is kept until then for roll_back(). The destructor does the same.
   void settle();
 
  private:
   enum class State {
     kPending,
-    kNew,       ///< in place, where nothing was
-    kReplaced,  ///< in place; the temporary name has what was there
-    kSettled,   ///< in place, for good
+    kNew,       ///< in place, where no file was
+    kReplaced,  ///< in place; the temporary name has the former file
+    kSettled,   ///< in place for good
   };
   void replace();
   void create();
@@ -43,7 +44,7 @@ class AtomicFile {
   State state_ = State::kPending;
 };
 
-/// `content` as the whole file `path`. Throws OutputError.
+/// Writes `content` as the whole file `path`. Throws OutputError.
 void write_file(const std::string& path, const std::string& content);
 
 }  // namespace shapemap

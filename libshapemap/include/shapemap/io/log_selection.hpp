@@ -8,7 +8,7 @@
 
 namespace shapemap {
 
-/// Which positions of a log are looked at: `skip` are left out, then every `every`-th counts, then `first` of those.
+/// Selects scans of a log: `skip` are left out, then every `every`-th counts, then `first` of those.
 struct SelectionOptions {
   int first = 0;
   int skip = 0;
@@ -22,10 +22,10 @@ struct SelectionOptions {
   }
 };
 
-/// The log with the selected positions only. Throws ConfigError when that leaves none of a log that has some.
+/// Returns the log with the selected scans only. Throws ConfigError when that leaves none of a log that has some.
 Log select_scans(Log log, const SelectionOptions& options);
 
-/// Where the selected position `index` stood in the whole log.
+/// Returns the index in the whole log of the selected scan `index`.
 std::size_t index_in_whole_log(std::size_t index, const SelectionOptions& options);
 
 }  // namespace shapemap

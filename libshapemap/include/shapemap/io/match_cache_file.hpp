@@ -11,34 +11,34 @@
 #include "shapemap/matching/match_cache.hpp"
 #include "shapemap/scan/scan.hpp"
 
-/// Alignments in a file, so that what a run has aligned survives its end, however sudden; docs/formats.md has the
+/// Matches are kept in a file, so that they survive the end of a run, however sudden; docs/formats.md describes its
 /// bytes.
 namespace shapemap {
 
 enum class StateOpening {
-  kCreate,   ///< there must be no such file
-  kReplace,  ///< whatever is there is lost
-  kResume,   ///< there must be one, of the same log, and made with the same options as far as they matter
+  kCreate,   ///< no such file may exist
+  kReplace,  ///< an existing file is lost
+  kResume,   ///< the file must exist, be of the same log, and be made with the same options as far as they matter
 };
 
-/// Each alignment is handed to the system as soon as it is made, which outlives the process, and is on the disk, which
-/// outlives a power cut, about a second later. Memory holds where each alignment lies (some 50 bytes), not what it is.
+/// Each match is handed to the system as soon as it is made, which outlives the process, and is on the disk, which
+/// outlives a power cut, about a second later. Memory holds where each match lies (some 50 bytes), not the match.
 class MatchCacheFile : public MatchCache {
  public:
-  /// `log` has the positions that are looked at, and only those. The options that matter are those of how a position is
-  /// seen and how two are aligned: with others, a file may be resumed. Throws InputError for a file that cannot be
-  /// resumed, which stays as it is; OutputError for one that cannot be written or that another run has open.
+  /// `log` has the selected scans only. The options that matter are those of how a scan is seen and how two are
+  /// matched; a file may be resumed with others changed. Throws InputError for a file that cannot be resumed, which
+  /// stays as it is, and OutputError for one that cannot be written or that another run has open.
   MatchCacheFile(std::string path, StateOpening opening, const Log& log, const MappingOptions& options);
   ~MatchCacheFile() override;
   MatchCacheFile(const MatchCacheFile&) = delete;
   MatchCacheFile& operator=(const MatchCacheFile&) = delete;
 
   std::optional<std::vector<MatchCandidate>> find(const MatchKey& key) override;
-  /// Throws OutputError when it cannot be written; what is in the file by then can be resumed.
+  /// Throws OutputError when the match cannot be written; the file can be resumed up to it.
   void keep(const MatchKey& key, const std::vector<MatchCandidate>& candidates) override;
 
-  std::size_t num_resumed() const { return num_resumed_; }  ///< alignments that the file had when it was opened
-  const std::string& warning() const { return warning_; }   ///< what was wrong with its end; empty: nothing
+  std::size_t num_resumed() const { return num_resumed_; }  ///< matches in the file when it was opened
+  const std::string& warning() const { return warning_; }   ///< damage at the end of the file; empty: none
 
  private:
   void open(StateOpening opening);
@@ -53,7 +53,7 @@ class MatchCacheFile : public MatchCache {
   std::size_t num_resumed_ = 0;
   std::string warning_;
 
-  std::mutex mutex_;  ///< guards what follows, and the end of the file
+  std::mutex mutex_;  ///< guards the following members, and the end of the file
   std::unordered_map<std::uint64_t, std::uint64_t> record_at_;
   std::uint64_t end_ = 0;
   std::chrono::steady_clock::time_point last_sync_;

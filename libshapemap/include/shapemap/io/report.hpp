@@ -12,10 +12,10 @@
 #include "shapemap/io/log_selection.hpp"
 #include "shapemap/mapper/map_log.hpp"
 
-/// The account of a run, for people and scripts.
+/// The report is the account of a run, for people and scripts.
 namespace shapemap {
 
-/// What a run had cost when so many positions of the log had been read; of several that are mapped as one, of all.
+/// The costs of a run when so many scans of the log, or of all logs that are mapped together, had been read.
 struct Milestone {
   std::size_t num_scans = 0;
   double wall_s = 0.0;
@@ -23,11 +23,11 @@ struct Milestone {
   double peak_memory_mib = 0.0;
 };
 
-/// What a run cost; the caller measures it.
+/// The caller measures these costs of a run.
 struct RunCosts {
   double read_s = 0.0;
   double map_s = 0.0;
-  double write_s = 0.0;  ///< up to the report itself
+  double write_s = 0.0;  ///< without the report itself
   double wall_s = 0.0;
   double cpu_s = 0.0;
   double peak_memory_mib = 0.0;
@@ -40,16 +40,16 @@ struct LogFile {
   std::string format;
 };
 
-/// How much of a fragment its picture shows.
+/// Tells how much of a component its picture shows.
 struct DrawnComponent {
-  int component = 0;  ///< index into MapResult::fragments
+  int component = 0;  ///< index into MapResult::components
   std::size_t num_returns = 0;
-  std::size_t num_outside = 0;  ///< of these, those that lie outside of the picture
+  std::size_t num_outside = 0;  ///< number of these that lie outside of the picture
 };
 
 struct RunReport {
   std::vector<LogFile> logs;
-  const Log& log;  ///< the selected positions of all logs, see joined_logs()
+  const Log& log;  ///< the selected scans of all sessions, see joined_logs()
   const MapResult& result;
   const MappingOptions& mapping;
   const LogReadOptions& reading;
@@ -58,15 +58,16 @@ struct RunReport {
   std::vector<std::string> warnings;
   RunCosts costs;
   WallOptions walls{};
-  std::vector<WallDirection> wall_directions{};  ///< of each fragment; empty when they were not asked for
+  std::vector<WallDirection> wall_directions{};  ///< one for each component; empty when walls were not aligned
   std::vector<DrawnComponent> drawn{};
-  std::vector<SweepVerdict> sweeps{};  ///< one for each log, if any was asked about
+  std::vector<SweepVerdict> sweeps{};  ///< one for each session, if deskewing was asked for
 };
 
-/// One JSON object; see docs/cli.md for its members. What is not a number (a pose that does not exist) is null.
+/// Returns one JSON object; docs/cli.md describes its members. Numbers that are not finite (a pose that does not exist)
+/// become null.
 std::string json_report(const RunReport& report);
 
-/// Names and versions of the library and of what it is built on.
+/// Returns the names and versions of the library and of its dependencies.
 std::vector<std::pair<std::string, std::string>> component_versions();
 
 }  // namespace shapemap

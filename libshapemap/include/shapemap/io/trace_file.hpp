@@ -9,13 +9,13 @@
 #include "shapemap/io/log_selection.hpp"
 #include "shapemap/mapper/map_log.hpp"
 
-/// All steps that led to a map as a file, for figures and analyses; docs/formats.md has its members.
+/// A trace holds all steps that led to a map, for figures and analyses; docs/formats.md describes its members.
 namespace shapemap {
 
-/// What is traced. The references must outlive the trace.
+/// The run that is traced. The references must outlive the trace.
 struct TracedRun {
-  std::vector<std::string> log_paths;  ///< one for each log that was joined
-  const Log& log;                      ///< the positions that are looked at
+  std::vector<std::string> log_paths;  ///< one for each session
+  const Log& log;                      ///< the selected scans
   const MappingOptions& mapping;
   const LogReadOptions& reading;
   const SelectionOptions& selection;
@@ -23,11 +23,11 @@ struct TracedRun {
 
 class ByteSink;
 
-/// Writes one JSON object a line as soon as there is something to tell, so that memory does not grow with the log.
-/// Holds no times and no number of threads: the same map has the same trace. All functions throw OutputError.
+/// Writes one JSON object a line as soon as there is something to tell, so that memory does not grow with the log. The
+/// trace has no times and no number of threads: the same map has the same trace. All functions throw OutputError.
 class TraceFile : public TraceSink {
  public:
-  /// A `path` that ends in ".gz" is compressed.
+  /// The file is compressed when `path` ends in ".gz".
   TraceFile(const std::string& path, TracedRun run);
   ~TraceFile() override;
 
@@ -37,7 +37,7 @@ class TraceFile : public TraceSink {
   void on_choice(const TracedChoice& choice) override;
   void on_revision(const TracedRevision& revision) override;
 
-  /// What became of each position, and the file to its place; without this there is none.
+  /// Writes the result of each scan and moves the file to its place; without this call no file appears.
   void commit(const MapResult& result);
 
  private:

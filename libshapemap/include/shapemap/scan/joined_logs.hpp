@@ -7,23 +7,23 @@
 
 #include "shapemap/scan/scan.hpp"
 
-/// Several logs that make one map, such as those of several robots.
+/// Several logs, such as those of several robots, can make one map. Each of them is a session of its own.
 namespace shapemap {
 
-/// All positions and warnings, log after log; Log::starts says where each begins. Its format is that of all of them, or
-/// their formats joined by "+".
+/// Concatenates the scans and warnings of the logs; Log::starts says where each session begins. The format is that of
+/// all of them, or their formats joined by "+".
 Log joined_logs(std::vector<Log> logs);
 
-/// The positions [first, last) of one of the logs that were joined.
+/// A session has the scans [first, last).
 struct LogPart {
   std::size_t first = 0;
   std::size_t last = 0;
 };
 
-/// One for each log that was joined, in order; one for a log that was recorded as one.
+/// Returns the sessions of a log in order; a log that was not joined has one.
 std::vector<LogPart> parts_of(const Log& log);
 
-/// Which of the joined logs position `index` is from.
+/// Returns the index of the session that scan `index` is from.
 std::size_t part_with(const Log& log, std::size_t index);
 
 }  // namespace shapemap

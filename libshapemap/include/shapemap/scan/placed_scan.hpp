@@ -8,29 +8,30 @@
 
 namespace shapemap {
 
-/// What became of the beams of a scan that returned, in the map that the scans from elsewhere make; as shares of them.
+/// The consistency of a scan with the map of all scans from elsewhere; each number is a share of the beams that
+/// returned.
 struct ScanConsistency {
-  double agree = 0.0;            ///< end on a surface that others saw
-  double through = 0.0;          ///< went through a surface that others saw, and on
-  double in_free = 0.0;          ///< end where others looked through
-  bool contradicts_map = false;  ///< too many of the last two among what is known
+  double agree = 0.0;            ///< beams that end on a surface that other scans saw
+  double through = 0.0;          ///< beams that pass through a surface that other scans saw
+  double in_free = 0.0;          ///< beams that end in space that other scans saw as free
+  bool contradicts_map = false;  ///< `through` and `in_free` are too large a share of known()
 
-  /// The rest ends where nobody else has looked.
+  /// The remaining beams end where no other scan has seen anything.
   double known() const { return agree + through + in_free; }
 };
 
-/// One position of the log with a pose.
+/// A placed scan is a scan of the log with its pose.
 struct PlacedScan {
-  std::size_t scan_index = 0;  ///< into Log::positions
+  std::size_t scan_index = 0;  ///< index into Log::scans
   double timestamp_s = 0.0;
   Pose2 map_from_robot;
-  /// Small corrections of each sub-scan found by decoupled ICP: pose of the sub-scan's robot frame in the
-  /// position's robot frame. One per sub-scan of the position.
+  /// Decoupled ICP corrects each sweep a little. This is the pose of the sweep's robot frame in the scan's robot frame,
+  /// one per sweep.
   std::vector<Pose2> robot_from_sweep;
-  ScanConsistency consistency{};  ///< with the rest of the fragment; see scan_agreement.hpp
+  ScanConsistency consistency{};  ///< consistency with the rest of the component; see scan_consistency.hpp
 };
 
-/// Positions that are connected by trusted alignments; poses are relative to its first position.
+/// Scans that trusted edges connect; their poses are relative to the first of them.
 struct Component {
   std::vector<PlacedScan> scans;
 };

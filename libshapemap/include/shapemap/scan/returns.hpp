@@ -7,12 +7,12 @@
 #include "shapemap/core/options.hpp"
 #include "shapemap/scan/scan.hpp"
 
-/// From ranges to points.
+/// This header turns ranges into points.
 namespace shapemap {
 
 struct ReturnOptions {
-  double min_range_m = 0.0;  ///< 0: what the log says
-  double max_range_m = 0.0;  ///< 0: what the log says
+  double min_range_m = 0.0;  ///< 0 takes the limit of the log
+  double max_range_m = 0.0;  ///< 0 takes the limit of the log
   double max_mount_tilt_rad = 30 * kDegree;
 
   template <class Self, class Visit>
@@ -25,43 +25,44 @@ struct ReturnOptions {
   }
 };
 
-/// What a beam hit.
+/// A return is the point where a beam hit a surface.
 struct Return {
   Point2 p_in_robot_m;
   std::size_t beam = 0;  ///< index into Sweep::ranges_m
   double range_m = 0.0;
 };
 
-/// No 2D laser measures this far: such readings are damage, and no returns whatever the limits say.
+/// No 2D laser measures this far: such readings are damaged, and no returns whatever the limits say.
 inline constexpr double kLongestRange_m = 1000.0;
 
-/// The limits that hold for `sweep`: the options' where given, else the log's, else kLongestRange_m.
+/// The range limits that hold for a sweep: those of the options where given, else those of the log, else
+/// kLongestRange_m.
 struct RangeLimits {
   double min_m = 0.0;
   double max_m = 0.0;
 };
 RangeLimits range_limits(const Sweep& sweep, const ReturnOptions& options);
 
-/// Whether a reading is a hit: finite, positive and inside the limits. A reading at the maximum is no hit.
+/// Says whether a reading is a return: finite, positive and inside the limits. A reading at the maximum is no return.
 bool is_return(float range_m, const RangeLimits& limits);
 
-/// The hits of one sub-scan in the robot's frame (x forward at the position's nominal heading 0), projected to the
-/// floor plane and ordered counterclockwise as seen from above, also for clockwise or upside-down sensors.
-/// Empty for a sensor that is tilted more than `options.max_mount_tilt_rad`.
+/// Returns the points of one sweep in the robot's frame (x is forward at the nominal heading 0 of the scan), projected
+/// to the floor plane and ordered counterclockwise as seen from above, also for clockwise or upside-down sensors. The
+/// result is empty for a sensor that is tilted more than `options.max_mount_tilt_rad`.
 std::vector<Return> returns_in_robot(const Sweep& sweep, const ReturnOptions& options);
 
-/// Whether a reading says that the beam hit nothing: NaN, infinite, or at or beyond a maximum range that is known. Zero
-/// and what is below the minimum range may as well be something too near to measure.
+/// Says whether a reading proves that the beam hit nothing: NaN, infinite, or at or beyond a known maximum range. Zero
+/// and readings below the minimum range may as well be surfaces too near to measure.
 bool is_open(float range_m, const RangeLimits& limits);
 
-/// Where beams that hit nothing end in the robot's frame, when they are followed for `length_m`, or up to the maximum
-/// range where that is known and shorter. Empty for a sensor that is tilted more than `options.max_mount_tilt_rad`.
+/// Returns the end points, in the robot's frame, of beams that hit nothing, followed for `length_m` or up to a known
+/// shorter maximum range. The result is empty for a sensor that is tilted more than `options.max_mount_tilt_rad`.
 std::vector<Point2> open_ends_in_robot(const Sweep& sweep, const ReturnOptions& options, double length_m);
 
-/// Whether the sensor's own z axis points to the floor, so that its counterclockwise is clockwise from above.
+/// Says whether the sensor's z axis points to the floor, so that its counterclockwise is clockwise from above.
 bool is_upside_down(const MountPose& robot_from_sensor);
 
-/// Where the sensor stands in the robot's frame, with the sub-scan's nominal heading applied.
+/// Returns the planar pose of the sensor in the robot's frame, with the sweep's nominal heading applied.
 Pose2 robot_from_sensor2(const Sweep& sweep);
 
 }  // namespace shapemap

@@ -8,11 +8,11 @@
 
 #include "shapemap/core/pose2.hpp"
 
-/// The plain model that every log format is read into.
+/// Every log format is read into this plain model.
 namespace shapemap {
 
-/// Where a sensor sits on the robot: x forward, y left, z up; yaw, then pitch, then roll. A laser mounted upside
-/// down has roll pi.
+/// The mount is the pose of a sensor on the robot: x forward, y left, z up; yaw, then pitch, then roll. A laser mounted
+/// upside down has roll pi.
 struct MountPose {
   double x_m = 0.0;
   double y_m = 0.0;
@@ -22,62 +22,63 @@ struct MountPose {
   double roll_rad = 0.0;
 };
 
-/// One sweep of one laser. Angles are in the sensor's plane: 0 is the sensor's x axis, counterclockwise is positive.
-/// Evenly spaced beams are the compact case: beam i points at `first_angle_rad + i * angle_step_rad`, and the step is
-/// negative for a clockwise sensor. Other beams have an angle each; set_beam_angles() sets them.
+/// A laser takes one sweep after the other. Angles are in the sensor's plane: 0 is the sensor's x axis,
+/// counterclockwise is positive. Evenly spaced beams are the compact case: beam i points at `first_angle_rad + i *
+/// angle_step_rad`, and the step is negative for a clockwise sensor. Other beams have an angle each, which
+/// set_beam_angles() sets.
 struct Sweep {
   std::vector<float> ranges_m;  ///< as recorded; NaN where the sensor itself says "no return"
   double first_angle_rad = 0.0;
-  double angle_step_rad = 0.0;          ///< of uneven beams, the typical one
-  std::vector<double> beam_angles_rad;  ///< one per reading where the beams are not evenly spaced, else empty
+  double angle_step_rad = 0.0;          ///< for uneven beams, the typical step
+  std::vector<double> beam_angles_rad;  ///< one per reading where the beams are uneven, else empty
   double min_range_m = 0.0;             ///< shorter readings are no returns
-  double max_range_m = 0.0;             ///< readings at or beyond it are no returns; 0 when the log does not say
-  MountPose robot_from_sensor;          ///< where the robot faces its nominal heading
-  double nominal_heading_rad = 0.0;     ///< turn of the robot, or of the sensor on it, since the first sub-scan
+  double max_range_m = 0.0;             ///< readings at or beyond it are no returns; 0 when the log states none
+  MountPose robot_from_sensor;          ///< the mount while the robot faces its nominal heading
+  double nominal_heading_rad = 0.0;  ///< turn of the robot, or of the sensor on it, since the first sweep of the scan
   std::string sensor_label;
 
-  double start_s = 0.0;             ///< time of the first beam, after the position's timestamp
-  double beam_time_step_s = 0.0;    ///< from each beam to the next; 0 when the log does not say
-  std::vector<float> beam_times_s;  ///< one per reading, after the position's timestamp, where the log has them
+  double start_s = 0.0;             ///< time of the first beam, counted from the scan's timestamp
+  double beam_time_step_s = 0.0;    ///< from each beam to the next; 0 when the log does not state it
+  std::vector<float> beam_times_s;  ///< one per reading, counted from the scan's timestamp, where the log has them
   std::vector<float> intensities;   ///< one per reading where the log has them, in the sensor's own unit
 
   bool is_evenly_spaced() const { return beam_angles_rad.empty(); }
   double beam_angle_rad(std::size_t beam) const {
     return is_evenly_spaced() ? first_angle_rad + static_cast<double>(beam) * angle_step_rad : beam_angles_rad[beam];
   }
-  /// After the position's timestamp.
+  /// Returns the time of a beam, counted from the scan's timestamp.
   double beam_time_s(std::size_t beam) const {
     return beam_times_s.empty() ? start_s + static_cast<double>(beam) * beam_time_step_s : beam_times_s[beam];
   }
 };
 
-/// One place where the robot stood: the sub-scans taken there make one complete scan.
+/// One scan is all sweeps that the robot took at one place; together they make a complete view.
 struct Scan {
   double timestamp_s = 0.0;  ///< as in the log
   std::vector<Sweep> sweeps;
-  std::optional<Pose2> reference_pose;  ///< surveyed pose, if the log has one; never used for mapping
-  /// What the robot itself took for its heading, if the log has it; never used for mapping, only to tell whether the
+  std::optional<Pose2> reference_pose;  ///< surveyed pose, if the log has one; mapping never uses it
+  /// The robot's own estimate of its heading, if the log has one. Mapping never uses it; it only tells whether the
   /// laser's scans are mirrored.
   std::optional<double> recorded_heading_rad;
 };
 
-/// A distance, or a narrow band of them, that stands for "no return" in the readings of one sensor.
+/// A level is a distance, or a narrow band of them, that stands for "no return" in the readings of one sensor.
 struct NoReturnLevel {
   std::string sensor_label;
-  double from_m = 0.0;  ///< the shortest reading on it
-  double to_m = 0.0;    ///< the longest
+  double from_m = 0.0;  ///< shortest reading on the level
+  double to_m = 0.0;    ///< longest reading on the level
   std::size_t num_readings = 0;
-  std::size_t log = 0;  ///< of several logs in one: whose
+  std::size_t log = 0;  ///< index of the session, where several logs were joined
 };
 
 struct Log {
   std::string format;  ///< "rawlog", "carmen", "nist" or "bare"
   std::vector<Scan> scans;
-  /// Of several logs in one: positions, in order, at which one starts that was recorded by itself; without the first.
+  /// Where several logs were joined, these are the first scans of all sessions but the first, in order.
   std::vector<std::size_t> starts;
-  std::vector<std::string> warnings;      ///< what was odd but could be read, one line each
-  std::vector<NoReturnLevel> no_returns;  ///< what was learned of the readings when the log was read
-  bool states_range_unit = false;         ///< the log says itself in which unit its ranges are
+  std::vector<std::string> warnings;      ///< oddities of the log that did not keep it from being read, one line each
+  std::vector<NoReturnLevel> no_returns;  ///< levels that were learned when the log was read
+  bool states_range_unit = false;         ///< the log states the unit of its ranges
 };
 
 }  // namespace shapemap

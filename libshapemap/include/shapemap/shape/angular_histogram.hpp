@@ -9,14 +9,14 @@
 #include "shapemap/core/options.hpp"
 #include "shapemap/shape/shape.hpp"
 
-/// Paper, section II-B: for each point, the directions to all scan points around it.
+/// The angular histogram of a point counts the directions to all scan points around it (paper, section II-B).
 namespace shapemap {
 
-/// What a bin's count is divided by.
+/// The count of each bin is divided by one of these.
 enum class HistogramNorm {
   kMaximum,  ///< the largest bin
   kL2,       ///< the square root of the sum of squares
-  kCount,    ///< the number of points around
+  kCount,    ///< the number of neighbours
 };
 
 template <>
@@ -36,10 +36,10 @@ struct HistogramOptions {
   }
 };
 
-/// Number of bins; the paper's.
+/// The paper uses this number of bins.
 inline constexpr std::size_t kHistogramBins = 36;
 
-/// A normalised histogram. Bins are stored in steps of 1/252, in which the paper's 0.25 and all quarters, thirds and
+/// Bins of a normalised histogram are stored in steps of 1/252, in which the paper's 0.25 and all quarters, thirds and
 /// sevenths are exact.
 inline constexpr double kHistogramScale = 252.0;
 
@@ -49,20 +49,20 @@ struct AngularHistogram {
   std::array<std::uint8_t, kStoredBins> bins{};
 };
 
-/// Counts to stored bins. All-zero counts give an all-zero histogram.
+/// Normalises counts and stores them as bins. All-zero counts give an all-zero histogram.
 AngularHistogram normalised(const std::array<int, kHistogramBins>& counts, HistogramNorm norm);
 
-/// The directions from each point of a shape to the points around it: computed once, binned anew for each rotation.
+/// The directions from each point of a shape to its neighbours are computed once, and binned anew for each rotation.
 class NeighbourDirections {
  public:
   NeighbourDirections(const Shape& shape, double radius_m);
 
-  /// One histogram per point, for the shape turned by `rotation_rad`. Bin b holds directions from b to b + 1 times
-  /// 10 degrees, counterclockwise from the x axis.
+  /// Returns one histogram per point, for the shape turned by `rotation_rad`. Bin b holds directions from b to b + 1
+  /// times 10 degrees, counterclockwise from the x axis.
   std::vector<AngularHistogram> histograms(double rotation_rad, HistogramNorm norm) const;
 
  private:
-  std::vector<std::size_t> first_;  ///< of each point in directions_rad_; one more at the end
+  std::vector<std::size_t> first_;  ///< index of each point's first direction; one more at the end
   std::vector<double> directions_rad_;
 };
 

@@ -10,7 +10,7 @@
 
 namespace shapemap {
 
-/// Finds neighbours among points of the plane (nanoflann's kd-tree). Keeps a copy of the points.
+/// Finds neighbours among points of the plane with nanoflann's kd-tree. It keeps a copy of the points.
 class PointIndex {
  public:
   struct Neighbour {
@@ -24,9 +24,9 @@ class PointIndex {
   PointIndex& operator=(PointIndex&&) noexcept;
 
   std::size_t size() const;
-  /// The nearest point at most `max_distance_m` away; an infinite distance when there is none.
+  /// Returns the nearest point at most `max_distance_m` away; the distance is infinite when there is none.
   Neighbour nearest(const Point2& p, double max_distance_m = std::numeric_limits<double>::infinity()) const;
-  /// All points within `radius_m`, by ascending index.
+  /// Returns all points within `radius_m`, by ascending index.
   std::vector<std::size_t> within(const Point2& p, double radius_m) const;
 
  private:

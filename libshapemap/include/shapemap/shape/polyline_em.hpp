@@ -7,8 +7,8 @@
 #include "shapemap/core/options.hpp"
 #include "shapemap/core/pose2.hpp"
 
-/// Paper, section II-A: the points of a scan are approximated by polylines, using expectation maximisation and
-/// perceptual grouping.
+/// The points of a scan are approximated by polylines, with expectation maximisation and perceptual grouping (paper,
+/// section II-A).
 namespace shapemap {
 
 struct PolylineOptions {
@@ -34,7 +34,7 @@ struct PolylineOptions {
   }
 };
 
-/// A directed line segment; the direction follows the order of the scan.
+/// A segment has a direction, which follows the order of the scan.
 struct LineSegment {
   Point2 start_m{0.0, 0.0};
   Point2 end_m{0.0, 0.0};
@@ -42,29 +42,30 @@ struct LineSegment {
   Point2 direction() const { return (end_m - start_m).normalized(); }
   double tangent_rad() const { return std::atan2(end_m.y() - start_m.y(), end_m.x() - start_m.x()); }
   double length_m() const { return (end_m - start_m).norm(); }
-  double distance_m(const Point2& p) const;  ///< to the nearest point of the segment, ends included
+  double distance_m(const Point2& p) const;  ///< distance to the nearest point of the segment, ends included
 };
 
-/// An ordered scan point with the spacing that neighbouring beams have at its range (range times beam step).
+/// A scan point comes with the spacing that neighbouring beams have at its range (range times beam step).
 struct ScanPoint {
   Point2 p_m{0.0, 0.0};
   double beam_spacing_m = 0.0;
 };
 
 struct PolylineFit {
-  std::vector<LineSegment> segments;  ///< in scan order
+  std::vector<LineSegment> segments;  ///< in the order of the scan
   std::vector<int> closest_segment;   ///< per point; -1 only when there are no segments
   int iterations = 0;
 };
 
-/// Runs of points between range jumps: [first, last) index pairs.
+/// Returns the runs of points between range jumps, as index pairs [first, last).
 std::vector<std::pair<std::size_t, std::size_t>> surface_runs(const std::vector<ScanPoint>& points,
                                                               const PolylineOptions& options);
 
-/// Line segments for the points of one sub-scan, in scan order. Starts from CGAL's simplification of each run, then
-/// alternates: E, the probability of each point under each segment from its distance; M, weighted orthogonal
-/// regression, the segment trimmed to its support; split where the support has a gap; merge what is nearly collinear,
-/// close end to end and jointly well supported; until the segments are stable.
+/// Fits line segments to the points of one sweep, in the order of the sweep. The fit starts from CGAL's simplification
+/// of each run. It then alternates until the segments are stable: E computes the probability of each point under each
+/// segment from its distance; M is weighted orthogonal regression, with the segment trimmed to its support; segments
+/// split where their support has a gap; segments that are nearly collinear, close end to end and well supported
+/// together merge.
 PolylineFit fit_polylines(const std::vector<ScanPoint>& points, const PolylineOptions& options);
 
 }  // namespace shapemap

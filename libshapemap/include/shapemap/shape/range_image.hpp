@@ -9,27 +9,27 @@
 
 namespace shapemap {
 
-/// What one sub-scan saw, by bearing: which surface ended each beam, and so which space was free. Places are in the
-/// robot's frame, bearings in the sensor's, counterclockwise as seen from above.
+/// A range image holds what one sweep saw by bearing: the surface that ended each beam, and so the space that was free.
+/// Points are in the robot's frame, bearings in the sensor's, counterclockwise as seen from above.
 struct RangeImage {
   struct Beam {
-    double range_m = 0.0;  ///< 0: no return
+    double range_m = 0.0;  ///< 0 is no return
     Point2 hit_m{0.0, 0.0};
-    Point2 normal{0.0, 0.0};   ///< of the surface there, towards the sensor
+    Point2 normal{0.0, 0.0};   ///< normal of the surface at the return, towards the sensor
     double footprint_m = 0.0;  ///< half of the length of surface between this beam and the next
   };
 
   Pose2 sensor_from_robot;
   double first_bearing_rad = 0.0;
-  double step_rad = 0.0;  ///< positive
+  double step_rad = 0.0;  ///< always positive
   std::vector<Beam> beams;
 
-  /// Index of the beam nearest to a bearing; -1: out of the field of view.
+  /// Returns the index of the beam nearest to a bearing, or -1 outside the field of view.
   int beam_at(double bearing_rad) const;
 };
 
-/// The image of a sub-scan whose points and polylines are `shape`. Uneven beams are put on even bearings, one typical
-/// step apart.
+/// Makes the image of a sweep whose points and polylines are `shape`. Uneven beams are put on even bearings, one
+/// typical step apart.
 RangeImage range_image(const Sweep& sweep, const SweepShape& shape);
 
 }  // namespace shapemap

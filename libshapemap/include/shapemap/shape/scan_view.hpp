@@ -23,34 +23,35 @@ struct ViewOptions {
   }
 };
 
-/// How much surface runs in which direction: bins of 1 degree.
+/// A tangent histogram tells how much surface runs in which direction, in bins of 1 degree.
 inline constexpr std::size_t kTangentBins = 360;
 using TangentHistogram = std::array<double, kTangentBins>;
 
-/// All that robust alignment needs of one position, in the robot's frame, computed once: shape points at constant arc
-/// length, what each beam ended at, and the histogram of tangents. Hypotheses turn and shift it, and never rebuild it.
+/// Everything that scan matching needs of one scan, in the robot's frame, computed once: shape points at constant arc
+/// length, the surface that each beam ended at, and the histogram of tangents. Match candidates turn and shift the
+/// view, and never rebuild it.
 struct ScanView {
-  std::vector<ShapePoint> points;  ///< by place along the scan
-  std::vector<Point2> directions;  ///< unit vectors along their tangents
+  std::vector<ShapePoint> points;  ///< ordered along the scan
+  std::vector<Point2> directions;  ///< unit vectors along the tangents of the points
 
-  /// Small where much surface runs the same way: the walls of a corridor say little.
+  /// The weight of a point is small where much surface runs the same way, since the walls of a corridor say little.
   std::vector<double> weights;
-  /// Large for surfaces across the direction that most of the scan runs in: the end of a corridor.
+  /// The cross weight is large for surfaces across the main direction of the scan, such as the end of a corridor.
   std::vector<double> cross_weights;
 
-  std::vector<RangeImage> images;  ///< one per sub-scan
+  std::vector<RangeImage> images;  ///< one per sweep
   TangentHistogram tangents{};     ///< smoothed over a few degrees
-  PointIndex index{{}};            ///< of `points`
+  PointIndex index{{}};            ///< index of `points`
   double reach_m = 0.0;            ///< nine of ten returns are nearer
-  double seen_share = 0.0;         ///< of all directions from the sensor, those with a surface
+  double seen_share = 0.0;         ///< share of all directions from the sensor in which a surface was seen
 
   std::size_t size() const { return points.size(); }
 };
 
-/// Whether there is hardly a direction that the scan does not see.
+/// Says whether the field of view is nearly a full circle.
 bool looks_all_round(const ScanView& view);
 
-/// Never fails: a position without returns has no points.
+/// Computes the view of a scan. This never fails: a scan without returns has no points.
 ScanView view_of(const Scan& scan, const ReturnOptions& returns, const PolylineOptions& polylines,
                  const ShapeOptions& shape, const ViewOptions& options);
 

@@ -9,12 +9,12 @@
 #include "shapemap/scan/scan.hpp"
 #include "shapemap/shape/polyline_em.hpp"
 
-/// Paper, section II: the shape of a scan, which is all that alignment looks at.
+/// The shape of a scan is all that matching uses of it (paper, section II).
 namespace shapemap {
 
-/// Which points carry the shape.
+/// One of these kinds of points carries the shape.
 enum class ShapePoints {
-  kResampled,  ///< points at equal arc length along the polylines: the same surface has the same shape at any range
+  kResampled,  ///< points at equal arc length along the polylines: a surface has the same shape at any range
   kBeams,      ///< the scan points themselves, as in the paper
 };
 
@@ -39,14 +39,14 @@ struct ShapeOptions {
   }
 };
 
-/// An ordered point with the direction of the polyline there.
+/// A shape point has the direction of the polyline there.
 struct ShapePoint {
   Point2 p_m{0.0, 0.0};
-  double tangent_rad = 0.0;  ///< 0 to 360 degrees: oriented along the scan order (counterclockwise about the sensor)
-  int sweep = 0;             ///< index into Position::sweeps
+  double tangent_rad = 0.0;  ///< in [0, 2 pi), oriented along the scan order (counterclockwise about the sensor)
+  int sweep = 0;             ///< index into Scan::sweeps
 };
 
-/// The ordered shape points of one position, in the robot's frame: sub-scan after sub-scan, each counterclockwise.
+/// A shape has the ordered points of one scan, in the robot's frame: sweep after sweep, each counterclockwise.
 struct Shape {
   std::vector<ShapePoint> points;
   int num_sweeps = 0;
@@ -54,7 +54,7 @@ struct Shape {
   std::size_t size() const { return points.size(); }
 };
 
-/// Polylines of one sub-scan (kept for figures) and the shape points that follow from them.
+/// The shape points of a sweep follow from its polylines, which are kept for figures.
 struct SweepShape {
   std::vector<ScanPoint> scan_points;
   PolylineFit polylines;
@@ -64,11 +64,11 @@ struct SweepShape {
 SweepShape sweep_shape(const Sweep& sweep, int sweep_index, const ReturnOptions& returns,
                        const PolylineOptions& polylines, const ShapeOptions& options);
 
-/// The whole position. Never fails: a position without returns has no points.
+/// Computes the shape of a whole scan. This never fails: a scan without returns has no points.
 Shape shape_of(const Scan& scan, const ReturnOptions& returns, const PolylineOptions& polylines,
                const ShapeOptions& options);
 
-/// The same shape seen from another frame; `sweep_poses` (one per sub-scan, or empty) are applied first.
+/// Returns the same shape seen from another frame; `sweep_poses` (one per sweep, or empty) are applied first.
 Shape moved(const Shape& shape, const Pose2& b_from_a, const std::vector<Pose2>& sweep_poses = {});
 
 }  // namespace shapemap

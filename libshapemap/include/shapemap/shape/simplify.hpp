@@ -8,8 +8,9 @@
 
 namespace shapemap {
 
-/// The vertices (indices into `points`, ascending, first and last included) of a simpler polyline that keeps within
-/// about `tolerance_m` of the given one. CGAL's polyline simplification: cost is the squared distance.
+/// Returns the vertices (indices into `points`, ascending, first and last included) of a simpler polyline that stays
+/// within about `tolerance_m` of the given one. CGAL's polyline simplification does it, with the squared distance as
+/// cost.
 std::vector<std::size_t> simplify_polyline(const std::vector<Point2>& points, double tolerance_m);
 
 }  // namespace shapemap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "fragment_files.hpp"
+#include "component_files.hpp"
 
 #include <unistd.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// fragment_N.png, fragment_N.yaml, fragment_N.tum or fragment_N.LOG.tum.
+/// Recognises fragment_N.png, fragment_N.yaml, fragment_N.tum and fragment_N.LOG.tum.
 bool is_fragment_name(const std::string& name) {
   const std::string begin = "fragment_";
   if (name.rfind(begin, 0) != 0) return false;
@@ -67,8 +67,8 @@ void check_fragments_folder(const std::string& folder, const std::vector<std::st
   if (!force && !old.empty()) throw OutputError("'" + old.front() + "' exists already; --force replaces it");
 }
 
-void add_fragments(const MapArguments& arguments, const LogSet& logs, const MapResult& result, OutputSet& outputs,
-                   std::vector<DrawnComponent>& drawn) {
+void add_component_files(const MapArguments& arguments, const LogSet& logs, const MapResult& result, OutputSet& outputs,
+                         std::vector<DrawnComponent>& drawn) {
   const MapSettings& settings = arguments.settings;
   const fs::path folder = without_last_slash(arguments.fragments_folder);
   outputs.add_folder(folder.string());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "sweep_chain.hpp"
+#include "sweep_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,43 +13,44 @@ namespace {
 
 constexpr double kKnotsPerPeriod = 1.0;
 
-/// Rates and accelerations of the heading that a chain starts with.
+/// The heading starts with these rates and accelerations.
 constexpr double kMostRate_rad_s = 440 * kDegree;
 constexpr double kRateStep_rad_s = 40 * kDegree;
 constexpr double kMostAcceleration_rad_s2 = 2400 * kDegree;
 constexpr double kAccelerationStep_rad_s2 = 1200 * kDegree;
-/// So many rates are looked into, and so many starts refined: of a long chain, and of a short one that is one of many.
+/// So many rates are tried, and so many starts refined, for a long run; the quick numbers hold for short runs, of which
+/// there are many.
 constexpr std::size_t kStartRates = 23;
 constexpr std::size_t kStarts = 12;
 constexpr std::size_t kQuickRates = 5;
 constexpr std::size_t kQuickStarts = 4;
 constexpr std::size_t kFirstSweeps = 3;
 
-/// How far the heading at the end of the next sweep may be from where it seems to go.
+/// The heading at the end of the next sweep may be this far from its prediction.
 constexpr double kAsideStep_rad = 12 * kDegree;
 constexpr int kAsideSteps = 4;
 
-/// What is worse than usual by this is looked into.
+/// An extension that is worse than usual by this is searched further.
 constexpr double kUsualFactor = 1.25;
 constexpr double kUsualSlack_m = 0.004;
-/// And by so much, the chain may have lost its way.
+/// An extension that is worse than this may have lost the motion.
 constexpr double kLost_m = 0.07;
 
-/// More than any misfit.
-constexpr double kWild_m = 1.0;
+/// This is more than any misfit.
+constexpr double kImplausible_m = 1.0;
 
 constexpr SweepFitOptions kTracking{0.5, 0.15, 5, 4e-3, 2, 1};
-constexpr SweepFitOptions kSettling{0.3, 0.12, 2, 2e-4, 2, 1};
+constexpr SweepFitOptions kRefinement{0.3, 0.12, 2, 2e-4, 2, 1};
 constexpr SweepFitOptions kFinish{0.12, 0.08, 3, 2e-4, 1, 1};
 
-class Chain {
+class MotionSearch {
  public:
-  Chain(const std::vector<TimedSweep>& sweeps, double period_s)
+  MotionSearch(const std::vector<TimedSweep>& sweeps, double period_s)
       : sweeps_(sweeps),
         period_s_(period_s),
         trajectory_(first_s(sweeps), last_s(sweeps), period_s / kKnotsPerPeriod) {}
 
-  /// Any rates first, of two sweeps; then the likely ones with an acceleration, of more of them.
+  /// Tries all rates on two sweeps first, then the likely ones with an acceleration on more of them.
   double start(std::size_t num, std::size_t num_rates, std::size_t num_starts) {
     std::vector<Start> starts;
     const std::size_t pair = std::min<std::size_t>(2, num);
@@ -64,7 +65,7 @@ class Chain {
     std::vector<Eigen::Vector3d> best = trajectory_.controls();
     for (const Start& one : curved) {
       set_start(num, one.rate_rad_s, one.acceleration_rad_s2);
-      fit_sweeps(sweeps_, 0, num, 0, kTracking, trajectory_);
+      fit_sweeps(sweeps_, {0, num, 0}, kTracking, trajectory_);
       const double misfit_m = misfit(0, num);
       if (misfit_m >= best_m) continue;
       best_m = misfit_m;
@@ -103,7 +104,7 @@ class Chain {
   double misfit(std::size_t first, std::size_t last) const {
     std::vector<PlacedSweep> placed;
     for (std::size_t i = first; i < last; ++i) {
-      if (is_wild(sweeps_[i], trajectory_)) return kWild_m;
+      if (is_implausible(sweeps_[i], trajectory_)) return kImplausible_m;
       placed.push_back(placed_sweep(sweeps_[i], trajectory_));
     }
     double sum_m = 0.0;
@@ -112,7 +113,7 @@ class Chain {
   }
 
  private:
-  /// What is tried for the next sweep: it moves the control points [free, end), and looks at sweeps from `first` on.
+  /// The search for the next sweep moves the control points [free, end), and compares sweeps from `first` on.
   struct Extension {
     std::size_t sweep = 0;
     std::size_t first = 0;
@@ -134,14 +135,14 @@ class Chain {
 
   void try_here(Extension& next) {
     const std::size_t i = next.sweep;
-    fit_sweeps(sweeps_, next.first, i + 1, next.free, kTracking, trajectory_);
+    fit_sweeps(sweeps_, {next.first, i + 1, next.free}, kTracking, trajectory_);
     const double misfit_m = misfit(i > 1 ? i - 2 : 0, i + 1);
     if (!(misfit_m < next.best_m)) return;
     next.best_m = misfit_m;
     next.best = copied(next);
   }
 
-  /// As at the start of a chain: any rates from the last sweep on.
+  /// Starts anew from the last sweep, with all rates.
   void restart(const std::vector<Eigen::Vector3d>& before, Extension& next) {
     const std::size_t last = next.sweep - 1;
     put(next.best, next);
@@ -223,7 +224,7 @@ class Chain {
     }
   }
 
-  /// Controls that are not known yet go on as those before.
+  /// Extrapolates the control points that are not known yet.
   void foresee(std::size_t i, std::size_t known, std::size_t end, double aside_rad) {
     std::vector<Eigen::Vector3d>& c = trajectory_.controls();
     for (std::size_t k = known; k < end; ++k) {
@@ -256,25 +257,25 @@ SweepMotion sweep_motion(const std::vector<TimedSweep>& sweeps, double period_s,
   const auto check = [&](std::size_t done) {
     if (keep_going && !keep_going(done)) throw Interrupted();
   };
-  Chain chain(sweeps, period_s);
-  chain.start(std::min(kFirstSweeps, sweeps.size()), kStartRates, kStarts);
+  MotionSearch search(sweeps, period_s);
+  search.start(std::min(kFirstSweeps, sweeps.size()), kStartRates, kStarts);
   for (std::size_t i = std::min(kFirstSweeps, sweeps.size()); i < sweeps.size(); ++i) {
     check(i);
-    chain.extend(i);
+    search.extend(i);
   }
   check(sweeps.size());
   const auto fit = [&](SweepFitOptions options, SweepTrajectory& trajectory) {
     options.threads = threads;
-    fit_sweeps(sweeps, 0, sweeps.size(), 0, options, trajectory);
+    fit_sweeps(sweeps, {0, sweeps.size(), 0}, options, trajectory);
   };
-  fit(kSettling, chain.trajectory());
-  SweepTrajectory trajectory = chain.trajectory().refined();
+  fit(kRefinement, search.trajectory());
+  SweepTrajectory trajectory = search.trajectory().refined();
   fit(kFinish, trajectory);
   SweepMotion motion{trajectory, std::vector<double>(sweeps.size(), 0.0)};
   parallel_for(sweeps.size(), threads, [&](std::size_t i) {
     if (i == 0) return;
-    if (is_wild(sweeps[i - 1], motion.trajectory) || is_wild(sweeps[i], motion.trajectory)) {
-      motion.misfit_m[i] = kWild_m;
+    if (is_implausible(sweeps[i - 1], motion.trajectory) || is_implausible(sweeps[i], motion.trajectory)) {
+      motion.misfit_m[i] = kImplausible_m;
       return;
     }
     motion.misfit_m[i] =
@@ -284,9 +285,9 @@ SweepMotion sweep_motion(const std::vector<TimedSweep>& sweeps, double period_s,
 }
 
 ShortMotion short_motion(const std::vector<TimedSweep>& sweeps, double period_s) {
-  Chain chain(sweeps, period_s);
-  const double misfit_m = chain.start(sweeps.size(), kQuickRates, kQuickStarts);
-  return {chain.trajectory(), misfit_m};
+  MotionSearch search(sweeps, period_s);
+  const double misfit_m = search.start(sweeps.size(), kQuickRates, kQuickStarts);
+  return {search.trajectory(), misfit_m};
 }
 
 }  // namespace shapemap

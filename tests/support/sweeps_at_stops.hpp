@@ -7,7 +7,7 @@
 #include "support/random_graph.hpp"
 #include "support/ring_walk.hpp"
 
-/// A robot that stops along the ring and takes four sub-scans at each stop, each with an error of its own.
+/// A robot stops along the ring and takes four sweeps at each stop, each with an error of its own.
 namespace shapemap::test {
 
 inline constexpr int kTurns = 4;
@@ -18,7 +18,7 @@ struct Stops {
   Log log;
 };
 
-/// `apart_m` along the ring; sub-scans of 100 degrees, turned by 90 degrees each.
+/// The stops are `apart_m` apart along the ring; sweeps of 100 degrees are turned by 90 degrees each.
 inline Stops stops_on_ring(std::size_t count, double apart_m, unsigned seed, double error_m, double error_rad) {
   const World world = ring_world(1);
   std::mt19937 rng(seed);
@@ -42,7 +42,7 @@ inline Stops stops_on_ring(std::size_t count, double apart_m, unsigned seed, dou
   return stops;
 }
 
-/// Root mean square of how much sub-scans are turned wrongly, apart from a turn that all of them share.
+/// Returns the root mean square heading error of the sweeps, apart from a turn that all of them share.
 inline double heading_rms_rad(const Stops& stops, const std::vector<Pose2>& map_from_robot,
                               const std::vector<std::vector<Pose2>>& robot_from_sweep) {
   std::vector<double> off_rad;

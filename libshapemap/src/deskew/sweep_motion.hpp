@@ -10,21 +10,21 @@
 
 namespace shapemap {
 
-/// How a robot moved while it took `sweeps`, which follow each other without a gap, and how well these go together
-/// then.
+/// The robot moved so while it took successive sweeps, which match each other with these misfits.
 struct SweepMotion {
   SweepTrajectory trajectory;
-  std::vector<double> misfit_m;  ///< of each sweep with the one before; 0 for the first
+  std::vector<double> misfit_m;  ///< misfit of each sweep with the one before; 0 for the first
 };
 
-/// `keep_going` is told how many sweeps are done, and asked whether to go on; false ends it with Interrupted.
+/// Estimates the motion of `sweeps`, which follow each other without a gap. `keep_going` learns how many sweeps are
+/// done; when it returns false, the estimate ends by throwing Interrupted.
 SweepMotion sweep_motion(const std::vector<TimedSweep>& sweeps, double period_s, int threads,
                          const std::function<bool(std::size_t done)>& keep_going);
 
-/// The same of a few sweeps, by a search that is made to be quick.
+/// A quick search finds the motion of a few sweeps.
 struct ShortMotion {
   SweepTrajectory trajectory;
-  double misfit_m = 0.0;  ///< the mean of all that follow each other
+  double misfit_m = 0.0;  ///< mean over all pairs of successive sweeps
 };
 ShortMotion short_motion(const std::vector<TimedSweep>& sweeps, double period_s);
 
