@@ -6,14 +6,14 @@
 
 #include "costs.hpp"
 #include "progress_bar.hpp"
-#include "shapemap/core/observer.hpp"
 #include "shapemap/io/report.hpp"
+#include "shapemap/mapper/mapping_events.hpp"
 #include "signals.hpp"
 
 namespace shapemap::cli {
 
 /// Drives the progress bar, keeps warnings for later, and stops the run on Ctrl-C.
-class ConsoleObserver : public RunObserver {
+class ConsoleObserver : public MappingEvents {
  public:
   explicit ConsoleObserver(bool show_progress, const char* what = "positions") : progress_(show_progress, what) {}
 

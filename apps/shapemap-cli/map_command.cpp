@@ -32,14 +32,17 @@ void require_a_map(const MapArguments& arguments, const MapResult& result, const
   throw InputError(why);
 }
 
-MapRun map_with_progress(const LogSet& logs, const MapArguments& arguments, TraceSink* sink,
+MapRun map_with_progress(const LogSet& logs, const MapArguments& arguments, MappingEvents* trace,
                          std::vector<std::string>& warnings, RunCosts& costs) {
   ConsoleObserver observer(arguments.verbosity != Verbosity::kQuiet);
   const std::unique_ptr<MatchCacheFile> state = open_state(arguments, logs.log, warnings);
   print_resumed(arguments, state.get());
   MapRun run;
   MapResult& result = run.result;
-  result = map_log(logs.log, arguments.settings.mapping, observer, sink, state.get());
+  std::vector<MappingEvents*> listeners{&observer};
+  if (trace) listeners.push_back(trace);
+  EventFanOut events(std::move(listeners));
+  result = map_log(logs.log, arguments.settings.mapping, events, state.get());
   observer.finish();
   if (interrupted() && result.placed().empty()) throw Interrupted();
   if (result.interrupted) print_interrupted(logs, result);

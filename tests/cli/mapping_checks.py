@@ -41,7 +41,7 @@ def flaser_poses(path, num):
 def reported_poses(report):
     """By index in the whole log; without the positions that are not placed."""
     poses = {}
-    for position in report["positions"]:
+    for position in report["scans"]:
         pose = position["map_from_robot"]
         if pose is not None:
             poses[position["index_in_whole_log"]] = (pose["x_m"], pose["y_m"], math.radians(pose["theta_deg"]))

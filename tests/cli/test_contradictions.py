@@ -38,8 +38,8 @@ def test_a_scan_taken_in_a_crowd_is_found_reported_and_not_drawn_over_the_rest(m
     assert report["num_placed"] == 12
     assert f"1 scan contradicts the rest of the map: positions {CROWDED}\n" in result.stderr
     assert report["num_contradicting"] == 1
-    for position in report["positions"]:
-        said = position["agreement"]
+    for position in report["scans"]:
+        said = position["consistency"]
         assert said["contradicts_map"] == (position["index"] == CROWDED)
         assert 0 <= said["agree"] + said["through"] + said["in_free"] <= 1 + 1e-9
         assert said["in_free"] > 0.2 if position["index"] == CROWDED else said["agree"] > 0.8
@@ -58,7 +58,7 @@ def test_of_a_log_without_contradictions_nothing_is_said_and_the_map_is_the_same
 def test_the_limit_is_an_option(mapped):
     result, picture, report = mapped(crowded_log(), "--contradicting-share", "1")
     assert "contradict" not in result.stderr
-    assert report["positions"][CROWDED]["agreement"]["in_free"] > 0.2, "the shares are there all the same"
+    assert report["scans"][CROWDED]["consistency"]["in_free"] > 0.2, "the shares are there all the same"
     assert picture == mapped(crowded_log(), "--contradicting-scans", "as-others")[1]
 
 

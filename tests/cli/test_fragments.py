@@ -30,12 +30,12 @@ def test_each_fragment_but_the_map_is_written(run, split_log, tmp_path):
     result = run(*split_log, "--report", "r.json", "--verbose")
     assert result.returncode == 4, result.stderr
     assert fragment_files(tmp_path / "apart") == ALL
-    fragments = json.loads((tmp_path / "r.json").read_text())["fragments"]
-    assert [f["num_positions"] for f in fragments] == [5, 1, 2]
+    fragments = json.loads((tmp_path / "r.json").read_text())["components"]
+    assert [f["num_scans"] for f in fragments] == [5, 1, 2]
     assert [f["is_map"] for f in fragments] == [True, False, False]
     for i in (1, 2):
         times = [line.split()[0] for line in (tmp_path / "apart" / f"fragment_{i}.tum").read_text().splitlines()]
-        assert len(times) == fragments[i]["num_positions"]
+        assert len(times) == fragments[i]["num_scans"]
         assert f"fragment_{i}.png" in (tmp_path / "apart" / f"fragment_{i}.yaml").read_text()
         assert (tmp_path / "apart" / f"fragment_{i}.png").read_bytes().startswith(b"\x89PNG")
     assert "fragment 2 is apart from the map: 2 positions, position 8 to position 9" in result.stderr

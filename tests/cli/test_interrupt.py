@@ -63,8 +63,8 @@ def test_an_interrupt_gives_the_map_so_far(cli_path, long_log, tmp_path, files_o
     assert files_of() == ["long.log", *OUTPUTS]
     report = json.loads((tmp_path / "map.json").read_text())
     assert report["interrupted"] is True
-    assert report["num_placed"] == report["num_positions"] == num_mapped
-    assert report["logs"][0]["num_positions"] == 4800
+    assert report["num_placed"] == report["num_scans"] == num_mapped
+    assert report["logs"][0]["num_scans"] == 4800
     assert len((tmp_path / "map.tum").read_text().splitlines()) == num_mapped
     assert (tmp_path / "map.png").read_bytes().startswith(b"\x89PNG")
     last = (tmp_path / "trace.jsonl").read_text().splitlines()[-1]

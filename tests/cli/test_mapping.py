@@ -36,7 +36,7 @@ def map_log(cli_path, folder, log, *arguments):
     result = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
     assert result.returncode in (0, 4), result.stderr
     trajectory, report = read_tum(folder / "map.tum"), read_report(folder / "map.json")
-    placed = [position for position in report["positions"] if position["map_from_robot"] is not None]
+    placed = [position for position in report["scans"] if position["map_from_robot"] is not None]
     assert len(placed) == report["num_placed"]
     assert list(trajectory.timestamps) == pytest.approx([position["timestamp_s"] for position in placed], abs=1e-6)
     return result, poses_by_time(trajectory), report
@@ -116,9 +116,9 @@ def test_a_truncated_arena_is_mapped_as_far_as_it_goes(mapped, arena, tmp_path):
     result, poses, report = mapped("cut.rawlog")
     assert "warning: cut.rawlog: damaged or cut off" in result.stderr
     assert any("cut off" in warning for warning in report["warnings"])
-    assert 8 <= report["num_positions"] <= 12  # measured: 10
+    assert 8 <= report["num_scans"] <= 12  # measured: 10
     truth = poses_by_time(read_tum(arena / "nist_arena.tum"))
-    errors = pair_errors({key: truth[key] for key in sorted(truth)[: report["num_positions"]]}, poses)
+    errors = pair_errors({key: truth[key] for key in sorted(truth)[: report["num_scans"]]}, poses)
     assert num_within(errors, 0.30, 5.0) >= len(errors) - 1, errors
     check_map(tmp_path / "map.pgm", poses)
 
@@ -140,14 +140,14 @@ def sample_log(name):
 
 def check_listing(result, poses, report):
     """Every position is either in the map or listed."""
-    map_fragments = {i for i, fragment in enumerate(report["fragments"]) if fragment["is_map"]}
+    map_fragments = {i for i, fragment in enumerate(report["components"]) if fragment["is_map"]}
     assert len(map_fragments) == 1
-    for position in report["positions"]:
+    for position in report["scans"]:
         placed = position["map_from_robot"] is not None
-        assert placed == (position["timestamp_s"] in poses) == (position["fragment"] in map_fragments)
+        assert placed == (position["timestamp_s"] in poses) == (position["component"] in map_fragments)
         listed = f"position {position['index_in_whole_log']} not placed: " in result.stderr
         assert listed == (not placed)
-    assert result.returncode == (0 if report["num_placed"] == report["num_positions"] else 4)
+    assert result.returncode == (0 if report["num_placed"] == report["num_scans"] else 4)
 
 
 @pytest.mark.parametrize("method", [(), WIDE], ids=METHODS)
@@ -155,7 +155,7 @@ def check_listing(result, poses, report):
 def test_a_sample_log_of_mrpt_is_mapped(mapped, tmp_path, name, method):
     _, selection, num_positions = SAMPLE_RUNS[name]
     result, poses, report = mapped(sample_log(name), *selection, *method, "--verbose")
-    assert report["num_positions"] == len(report["positions"]) == num_positions
+    assert report["num_scans"] == len(report["scans"]) == num_positions
     assert report["num_placed"] >= num_positions - 1
     check_listing(result, poses, report)
     check_map(tmp_path / "map.pgm", poses)
@@ -167,15 +167,15 @@ SPARSE = ("--every", 20, *WIDE)  # of uwb: 18 positions, too far apart. Measured
 def test_positions_too_far_apart_are_listed(mapped):
     result, poses, report = mapped(sample_log("uwb"), *SPARSE, "--verbose")
     assert result.returncode == 4
-    assert report["num_positions"] == 18
+    assert report["num_scans"] == 18
     assert 4 <= len(poses) <= 14
-    assert len(report["fragments"]) >= 2
+    assert len(report["components"]) >= 2
     check_listing(result, poses, report)
 
 
 def test_the_report_gives_a_reason_for_each_position_without_a_place(mapped):
     _, _, report = mapped(sample_log("uwb"), *SPARSE)
-    unplaced = [position for position in report["positions"] if position["map_from_robot"] is None]
+    unplaced = [position for position in report["scans"] if position["map_from_robot"] is None]
     assert unplaced
     assert all(position["why_not_in_map"] for position in unplaced)
 

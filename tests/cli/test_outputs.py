@@ -49,9 +49,9 @@ def test_a_run_maps_the_room_and_writes_all_that_is_asked_for(run, room_log, tmp
         assert abs(expected[2] - found[2]) < math.radians(2)
     report = json.loads((tmp_path / "report.json").read_text())
     assert report["num_placed"] == 12
-    assert len(report["positions"]) == 12
+    assert len(report["scans"]) == 12
     for i, (x, y, theta) in enumerate(carmen_poses((tmp_path / "out.log").read_text())):
-        pose = report["positions"][i]["map_from_robot"]
+        pose = report["scans"][i]["map_from_robot"]
         assert abs(x - pose["x_m"]) < 1e-5
         assert abs(y - pose["y_m"]) < 1e-5
         assert abs(math.degrees(theta) - pose["theta_deg"]) < 1e-3
@@ -80,12 +80,12 @@ def test_unplaced_positions_are_listed_and_left_out(run, tmp_path, method, num_p
     listed = [line for line in result.stderr.splitlines() if "not placed" in line]
     report = json.loads((tmp_path / "r.json").read_text())
     assert report["num_placed"] == num_placed
-    assert report["num_positions"] == 33
+    assert report["num_scans"] == 33
     assert len(listed) == 20
     assert f"... and {33 - num_placed - 20} more, see --report" in result.stderr
     assert len(result.stdout.splitlines()) == num_placed
     assert (tmp_path / "out.log").read_text().count("FLASER") == num_placed
-    assert all(p["reason"] for p in report["positions"][3:28])
+    assert all(p["reason"] for p in report["scans"][3:28])
     assert "not placed" not in run(*log, "--out", "quiet.png", "--quiet").stderr
     verbose = run(*log, "--out", "verbose.png", "--verbose").stderr
     assert verbose.count("not placed") == 33 - num_placed
@@ -100,7 +100,7 @@ def test_alignments_in_doubt_are_counted_and_listed(run, room_log, tmp_path):
     assert "35 of 35 alignments are uncertain: 0 with too little overlap, 35 ambiguous, 0 degenerate" in result.stderr
     assert result.stderr.count(" ambiguous: the pose is right with a probability of ") == 20
     assert "... and 15 more, see --report" in result.stderr
-    positions = json.loads((tmp_path / "r.json").read_text())["positions"]
+    positions = json.loads((tmp_path / "r.json").read_text())["scans"]
     assert {p["alignment"]["status"] for p in positions[1:]} == {"ambiguous"}
     assert all(0 < p["alignment"]["probability"] < 1 for p in positions[1:])
     assert all(p["alignment"]["ref_from_query"] for p in positions[1:])
@@ -116,8 +116,8 @@ def test_what_loops_hold_is_not_uncertain(run, room_log, tmp_path):
     result = run("long.log", "--sure-probability", 1, "--out", "map.png", "--report", "r.json")
     assert result.returncode == 0, result.stderr
     report = json.loads((tmp_path / "r.json").read_text())
-    doubtful = [p for p in report["positions"][1:] if p["alignment"]["status"] != "ok"]
-    held = [p for p in doubtful if p["held_by_loops"]]
+    doubtful = [p for p in report["scans"][1:] if p["alignment"]["status"] != "ok"]
+    held = [p for p in doubtful if p["loop_constrained"]]
     assert len(doubtful) == 35
     assert len(held) > 20, "the robot comes by twice"
     uncertain = 35 - len(held)
@@ -126,7 +126,7 @@ def test_what_loops_hold_is_not_uncertain(run, room_log, tmp_path):
     listed = [line for line in result.stderr.splitlines() if " ambiguous: the pose" in line]
     assert [
         f"position {p['index']} " in line
-        for p, line in zip((p for p in doubtful if not p["held_by_loops"]), listed, strict=True)
+        for p, line in zip((p for p in doubtful if not p["loop_constrained"]), listed, strict=True)
     ] == [True] * uncertain
 
 
@@ -137,7 +137,7 @@ def test_the_report_tells_loops_keyframes_and_stages(run, room_log, tmp_path):
     result = run("twice.log", "--out", "map.png", "--report", "r.json", "--verbose")
     assert result.returncode == 0, result.stderr
     report = json.loads((tmp_path / "r.json").read_text())
-    positions = report["positions"]
+    positions = report["scans"]
     assert not report["interrupted"]
     assert report["loops"]
     for loop in report["loops"]:
@@ -158,8 +158,8 @@ def test_selection_keeps_count_in_the_whole_log(run, room_log, tmp_path):
     result = run("room.log", "--out", "m.png", "--skip", 2, "--every", 2, "--first", 3, "--report", "r.json")
     assert result.returncode in (0, 4), result.stderr
     report = json.loads((tmp_path / "r.json").read_text())
-    assert [p["index_in_whole_log"] for p in report["positions"]] == [2, 4, 6]
-    assert [p["timestamp_s"] for p in report["positions"]] == [3.0, 5.0, 7.0]
+    assert [p["index_in_whole_log"] for p in report["scans"]] == [2, 4, 6]
+    assert [p["timestamp_s"] for p in report["scans"]] == [3.0, 5.0, 7.0]
 
 
 def test_a_pipe_gets_no_progress_bar_and_quiet_means_silence(run, room_log):

@@ -47,7 +47,7 @@ def mapped(run, tmp_path):
 
 
 def map_of(report):
-    return next(fragment for fragment in report["fragments"] if fragment["is_map"])
+    return next(fragment for fragment in report["components"] if fragment["is_map"])
 
 
 def test_a_false_reading_does_not_make_the_picture_large_and_is_counted(mapped):
@@ -103,7 +103,7 @@ def test_walls_become_straight_and_all_that_is_written_turns_with_them(mapped):
         assert 0 <= column < straight.shape[1]
     for a, b in zip(times, times[1:]):
         assert relative(turned[a], turned[b]) == pytest.approx(relative(poses[a], poses[b]), abs=1e-6)
-    reported = [position["map_from_robot"] for position in report["positions"]]
+    reported = [position["map_from_robot"] for position in report["scans"]]
     assert [pose["x_m"] for pose in reported] == pytest.approx([turned[time][0] for time in times], abs=1e-6)
 
 

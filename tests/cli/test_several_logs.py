@@ -72,14 +72,14 @@ def test_the_report_and_the_trace_tell_which_position_is_whose(run, robots, tmp_
     report = json.loads((tmp_path / "r.json").read_text())
     logs = report["logs"]
     assert [(log["path"], log["format"]) for log in logs] == [("robot1.log", "carmen"), ("robot2.rawlog", "rawlog")]
-    assert [(log["first_index"], log["num_positions"]) for log in logs] == [(0, 4), (4, 5)], "each is selected from"
-    positions = report["positions"]
+    assert [(log["first_index"], log["num_scans"]) for log in logs] == [(0, 4), (4, 5)], "each is selected from"
+    positions = report["scans"]
     assert [p["log"] for p in positions] == [0] * 4 + [1] * 5
     assert [p["index_in_whole_log"] for p in positions] == [1, 3, 5, 7, 1, 3, 5, 7, 9]
     assert [p["index"] for p in positions] == list(range(9))
     assert positions[4]["alignment"] is None, "nothing is before the first position of a log"
-    for fragment in report["fragments"]:
-        assert sum(log["num_positions"] for log in fragment["logs"]) == fragment["num_positions"]
+    for fragment in report["components"]:
+        assert sum(log["num_scans"] for log in fragment["logs"]) == fragment["num_scans"]
     records = [json.loads(line) for line in (tmp_path / "t.jsonl").read_text().splitlines()]
     assert records[0]["log"] == "robot1.log"
     assert records[0]["logs"] == [{"path": log["path"], "first_index": log["first_index"]} for log in logs]

@@ -30,7 +30,7 @@ inline Outcome read_and_map(const std::string& path) {
     log.scans.resize(std::min(log.scans.size(), kStraightened));
     MappingOptions options;
     options.run.threads = 1;
-    RunObserver observer;
+    MappingEvents observer;
     log = straightened(std::move(log), options.returns, options.deskew, 1, {1, observer}).log;
     log.scans.resize(std::min(log.scans.size(), kFirst));
     map_log(log, options, observer);

@@ -3,12 +3,12 @@
 
 #include <cstddef>
 
-#include "shapemap/core/observer.hpp"
+#include "shapemap/mapper/mapping_events.hpp"
 
 namespace shapemap::test {
 
 /// This observer lets a run go on until it has been asked `times` times.
-struct Patience : RunObserver {
+struct Patience : MappingEvents {
   explicit Patience(std::size_t times) : left(times) {}
   bool keep_going() override {
     ++asked;

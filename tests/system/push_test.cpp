@@ -26,7 +26,7 @@ Log begin_of_orebro(std::size_t count) {
 TEST(PushedRealLog, GivesTheMapOfTheLogHoweverScansAreGrouped) {
   const Log log = begin_of_orebro(60);
   if (log.scans.empty()) GTEST_SKIP() << "needs carmen/orebro-corrected.log.gz in SHAPEMAP_DATASETS";
-  RunObserver nobody;
+  MappingEvents nobody;
   MappingOptions options;
   options.run.threads = 1;
   const MapResult expected = map_log(log, options, nobody);

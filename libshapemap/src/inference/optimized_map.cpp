@@ -126,8 +126,18 @@ OptimizedMap optimized_map(const KeyframeGraph& graph, const std::vector<LoopCan
                                   options.refinement, execution.threads, observer);
   map.map_from_keyframe = std::move(refined.map_from_node);
   map.constraints.insert(map.constraints.end(), refined.neighbours.begin(), refined.neighbours.end());
-  for (const std::size_t k : solution.accepted) {
-    if (is_closed(clusters[k], map.map_from_keyframe)) map.loops.push_back(closed_loop(graph, clusters[k]));
+  std::vector<char> is_accepted(clusters.size(), 0);
+  for (const std::size_t k : solution.accepted) is_accepted[k] = 1;
+  for (std::size_t k = 0; k < clusters.size(); ++k) {
+    const bool is_closed_in_map = is_closed(clusters[k], map.map_from_keyframe);
+    if (is_accepted[k] && is_closed_in_map) {
+      map.loops.push_back(closed_loop(graph, clusters[k]));
+    } else {
+      const char* why = is_accepted[k]     ? "all others outvote it"
+                        : is_closed_in_map ? "closing it gains too little"
+                                           : "the map has its two places elsewhere";
+      map.refused_loops.push_back({closed_loop(graph, clusters[k]), why});
+    }
   }
   return map;
 }

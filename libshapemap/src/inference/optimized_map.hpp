@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "graph/keyframe_graph.hpp"
@@ -12,6 +13,12 @@
 
 namespace shapemap {
 
+/// A loop that was considered and is not closed.
+struct RefusedLoop {
+  ClosedLoop loop;  ///< of scans
+  std::string why;  ///< one line
+};
+
 /// Where the keyframes are, and what holds them there.
 struct OptimizedMap {
   std::vector<Pose2> map_from_keyframe;
@@ -19,6 +26,7 @@ struct OptimizedMap {
   std::vector<bool> loop_constrained;  ///< per link: its two keyframes stay where they are without it
   std::vector<std::size_t> component;  ///< per keyframe: the first of those that it hangs together with
   std::vector<ClosedLoop> loops;       ///< of positions
+  std::vector<RefusedLoop> refused_loops;
   /// Of keyframes, all that the map was solved with. None where it is only the chain.
   std::vector<PoseConstraint> constraints;
 };

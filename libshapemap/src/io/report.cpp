@@ -61,7 +61,7 @@ Json log_json(const RunReport& report, std::size_t which, const LogPart& part) {
   Json sensors = Json::array();
   for (const LogSummary::Sensor& sensor : summary.sensors) {
     sensors.push_back({{"label", sensor.label},
-                       {"num_sub_scans", sensor.num_sweeps},
+                       {"num_sweeps", sensor.num_sweeps},
                        {"num_beams", sensor.most_beams},
                        {"fewest_beams", sensor.fewest_beams},
                        {"num_without_readings", sensor.num_without_readings},
@@ -86,7 +86,7 @@ Json log_json(const RunReport& report, std::size_t which, const LogPart& part) {
   return {{"path", file.path},
           {"format", file.format},
           {"first_index", part.first},
-          {"num_positions", summary.num_scans},
+          {"num_scans", summary.num_scans},
           {"num_placed", num_inside(report.result.placed(), part)},
           {"duration_s", summary.duration_s},
           {"sensors", sensors},
@@ -132,7 +132,7 @@ Json match_json(const ScanResult& scan, std::size_t reference) {
           {"overlap", paper.overlap},
           {"overlap_ratio", scan.paper ? paper.overlap_ratio : agree},
           {"icp_iterations", paper.icp_iterations},
-          {"query_from_sub_scan", poses_json(paper.query_from_sweep)}};
+          {"query_from_sweep", poses_json(paper.query_from_sweep)}};
 }
 
 Json scan_json(const ScanResult& scan, std::size_t reference, const RunReport& report) {
@@ -142,15 +142,15 @@ Json scan_json(const ScanResult& scan, std::size_t reference, const RunReport& r
           {"log", log},
           {"index_in_whole_log", index_in_whole_log(scan.scan_index - first, report.selection)},
           {"timestamp_s", scan.timestamp_s},
-          {"fragment", scan.component},
-          {"starts_fragment", scan.starts_component},
+          {"component", scan.component},
+          {"starts_component", scan.starts_component},
           {"is_keyframe", scan.component >= 0 && scan.is_keyframe},
-          {"held_by_loops", scan.loop_constrained},
+          {"loop_constrained", scan.loop_constrained},
           {"reason", scan.reason},
           {"alignment", match_json(scan, reference)},
           {"why_not_in_map", report.result.why_not_in_map(scan)},
           {"map_from_robot", nullptr},
-          {"agreement", nullptr}};
+          {"consistency", nullptr}};
 }
 
 Json consistency_json(const ScanConsistency& consistency) {
@@ -170,7 +170,7 @@ Json scans_json(const RunReport& report) {
   }
   for (const Component& component : report.result.components) {
     for (const PlacedScan& place : component.scans) {
-      list.at(entry_of.at(place.scan_index))["agreement"] = consistency_json(place.consistency);
+      list.at(entry_of.at(place.scan_index))["consistency"] = consistency_json(place.consistency);
     }
   }
   for (const PlacedScan& place : report.result.placed()) {
@@ -185,7 +185,7 @@ Json per_log_json(const Log& log, const std::vector<PlacedScan>& scans) {
   const std::vector<LogPart> parts = parts_of(log);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const std::size_t count = num_inside(scans, parts[i]);
-    if (count > 0) list.push_back({{"log", i}, {"num_positions", count}});
+    if (count > 0) list.push_back({{"log", i}, {"num_scans", count}});
   }
   return list;
 }
@@ -210,8 +210,8 @@ Json components_json(const RunReport& report) {
   for (std::size_t i = 0; i < result.components.size(); ++i) {
     const std::vector<PlacedScan>& scans = result.components[i].scans;
     if (scans.empty()) continue;
-    list.push_back({{"fragment", i},
-                    {"num_positions", scans.size()},
+    list.push_back({{"component", i},
+                    {"num_scans", scans.size()},
                     {"first_index", scans.front().scan_index},
                     {"last_index", scans.back().scan_index},
                     {"logs", per_log_json(report.log, scans)},
@@ -238,7 +238,7 @@ Json timings_json(const RunReport& report) {
   const RunCosts& costs = report.costs;
   return {{"shape", times.shape_s}, {"align", times.align_s},
           {"icp", times.icp_s},     {"decoupled_icp", times.decoupled_icp_s},
-          {"loops", times.loops_s}, {"agreement", times.consistency_s},
+          {"loops", times.loops_s}, {"consistency", times.consistency_s},
           {"read", costs.read_s},   {"map", costs.map_s},
           {"write", costs.write_s}, {"wall", costs.wall_s},
           {"cpu", costs.cpu_s}};
@@ -247,7 +247,7 @@ Json timings_json(const RunReport& report) {
 Json milestones_json(const RunCosts& costs) {
   Json list = Json::array();
   for (const Milestone& milestone : costs.milestones) {
-    list.push_back({{"num_positions", milestone.num_scans},
+    list.push_back({{"num_scans", milestone.num_scans},
                     {"wall_s", milestone.wall_s},
                     {"cpu_s", milestone.cpu_s},
                     {"peak_memory_mib", milestone.peak_memory_mib}});
@@ -261,17 +261,17 @@ std::string json_report(const RunReport& report) {
   Json versions = Json::object();
   for (const auto& [name, version] : component_versions()) versions[name] = version;
   const Json all = {{"format", "shapemap-report"},
-                    {"format_version", 2},
+                    {"format_version", 3},
                     {"versions", versions},
                     {"logs", logs_json(report)},
                     {"options", options_json(report)},
-                    {"num_positions", report.result.scans.size()},
+                    {"num_scans", report.result.scans.size()},
                     {"num_placed", report.result.placed().size()},
                     {"num_contradicting", num_contradicting(report.result.placed())},
                     {"interrupted", report.result.interrupted},
-                    {"fragments", components_json(report)},
+                    {"components", components_json(report)},
                     {"loops", loops_json(report.result)},
-                    {"positions", scans_json(report)},
+                    {"scans", scans_json(report)},
                     {"warnings", report.warnings},
                     {"seconds", timings_json(report)},
                     {"milestones", milestones_json(report.costs)},

@@ -35,11 +35,11 @@ void TraceFile::on_alignment(const TracedAlignment& alignment) {
   write_line(alignment_json(alignment, run_.mapping.paper.lcs.target), *sink_);
 }
 
-void TraceFile::on_link(const TracedLink& edge) { write_line(edge_json(edge), *sink_); }
+void TraceFile::on_edge(const EdgeFound& edge) { write_line(edge_json(edge), *sink_); }
 
-void TraceFile::on_choice(const TracedChoice& choice) { write_line(choice_json(choice), *sink_); }
+void TraceFile::on_edge_chosen(const EdgeChosen& choice) { write_line(choice_json(choice), *sink_); }
 
-void TraceFile::on_revision(const TracedRevision& revision) { write_line(revision_json(revision), *sink_); }
+void TraceFile::on_edge_verified(const EdgeVerified& revision) { write_line(revision_json(revision), *sink_); }
 
 void TraceFile::commit(const MapResult& result) {
   // Scans and components are both in the order of the log, so that counting finds the entry of each scan.

@@ -177,7 +177,7 @@ Json alignment_json(const TracedAlignment& traced, LcsTarget target) {
   return all;
 }
 
-Json edge_json(const TracedLink& edge) {
+Json edge_json(const EdgeFound& edge) {
   return {{"record", "link"},
           {"reference", edge.reference_index},
           {"query", edge.query_index},
@@ -186,7 +186,7 @@ Json edge_json(const TracedLink& edge) {
           {"hypotheses", candidates_json(edge.candidates)}};
 }
 
-Json choice_json(const TracedChoice& choice) {
+Json choice_json(const EdgeChosen& choice) {
   return {{"record", "choice"},
           {"reference", choice.reference_index},
           {"query", choice.query_index},
@@ -194,7 +194,7 @@ Json choice_json(const TracedChoice& choice) {
           {"margin", choice.margin}};
 }
 
-Json revision_json(const TracedRevision& revision) {
+Json revision_json(const EdgeVerified& revision) {
   Json candidates = candidates_json(revision.candidates);
   for (std::size_t k = 0; k < revision.support_by_others.size(); ++k) {
     candidates[k]["for_it"] = revision.support_by_others[k].for_it;

@@ -13,9 +13,9 @@ Json run_json(const TracedRun& run);
 Json scan_json(const TracedRun& run, std::size_t scan_index, const std::vector<ShapePoint>& points);
 
 Json alignment_json(const TracedAlignment& traced, LcsTarget target);
-Json edge_json(const TracedLink& edge);
-Json choice_json(const TracedChoice& choice);
-Json revision_json(const TracedRevision& revision);
+Json edge_json(const EdgeFound& edge);
+Json choice_json(const EdgeChosen& choice);
+Json revision_json(const EdgeVerified& revision);
 
 /// `placed` is null for a scan that is in no component.
 Json result_json(const ScanResult& scan, const PlacedScan* placed);

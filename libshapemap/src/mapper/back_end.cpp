@@ -60,13 +60,18 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-void trace_verified(const KeyframeGraph& graph, TraceSink& sink) {
+void tell_loops(const OptimizedMap& map, MappingEvents& events) {
+  for (const ClosedLoop& loop : map.loops) events.on_loop({loop, true, ""});
+  for (const RefusedLoop& refused : map.refused_loops) events.on_loop({refused.loop, false, refused.why});
+}
+
+void tell_verified(const KeyframeGraph& graph, MappingEvents& events) {
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     const OdometryEdge& edge = graph.edges[i];
     if (!edge.verified) continue;
-    sink.on_revision({graph.keyframes[i].scan_index, graph.keyframes[i + 1].scan_index, edge.candidates,
-                      edge.verified->support_by_others, edge.verified->parallel_support, edge.verified->in_map,
-                      edge.verified->candidate, edge.verified->probability});
+    events.on_edge_verified({graph.keyframes[i].scan_index, graph.keyframes[i + 1].scan_index, edge.candidates,
+                             edge.verified->support_by_others, edge.verified->parallel_support, edge.verified->in_map,
+                             edge.verified->candidate, edge.verified->probability});
   }
 }
 
@@ -124,7 +129,7 @@ void BackEnd::update() {
   }
   next_update_ = std::min(next_optimization_, graph_.keyframes.size() + kFollowedAtOnce);
   result_.times.loops_s += watch.seconds();
-  context_.observer.on_stage("chain");
+  context_.events.on_stage("chain");
 }
 
 /// Chooses a candidate of each edge by its neighbours, and by how the sensor usually moves.
@@ -138,12 +143,11 @@ void BackEnd::choose_odometry() {
   choose_candidates(graph_);
   if (!closes_loops()) let_views_go();
   result_.times.align_s += watch.seconds();
-  if (!context_.sink) return;
   for (const std::size_t i : completed) {
     const OdometryEdge& edge = graph_.edges[i];
     if (edge.candidates.empty()) continue;
-    context_.sink->on_link({graph_.keyframes[i].scan_index, graph_.keyframes[i + 1].scan_index, edge.candidates,
-                            edge.num_own, edge.insufficient_view});
+    context_.events.on_edge({graph_.keyframes[i].scan_index, graph_.keyframes[i + 1].scan_index, edge.candidates,
+                             edge.num_own, edge.insufficient_view});
   }
 }
 
@@ -159,9 +163,10 @@ bool BackEnd::optimize_and_cull() {
   const RobustOptions& options = context_.options.robust;
   const std::size_t num_settled = graph_.keyframes.size() - kKeyframesInUse;
   find_loops(graph_, num_settled, loop_search(execution()), loops_);
-  if (!context_.observer.keep_going()) return false;
+  if (!context_.events.keep_going()) return false;
   OptimizedMap map = optimized_map(graph_, loops_.candidates, Improbable::kIsCut, options, execution());
-  if (!context_.observer.keep_going()) return false;
+  if (!context_.events.keep_going()) return false;
+  tell_loops(map, context_.events);
   publish(graph_, map);
   const RedundantKeyframes redundant = find_redundant_keyframes(graph_, map, options, context_.options.run.threads);
   if (!redundant.are_of_right_map()) return false;
@@ -170,6 +175,7 @@ bool BackEnd::optimize_and_cull() {
   }
   cull(redundant.of_keyframe, map);
   revisits_.start(graph_, map, graph_.keyframes.size() - kKeyframesInUse);
+  tell_localization();
   return true;
 }
 
@@ -177,13 +183,20 @@ bool BackEnd::optimize_and_cull() {
 void BackEnd::follow() {
   if (revisits_.is_lost()) {
     find_loops(graph_, graph_.keyframes.size() - kKeyframesInUse, loop_search(execution()), loops_);
-    if (!context_.observer.keep_going()) return;
+    if (!context_.events.keep_going()) return;
   }
   RevisitTracker::Followed followed = revisits_.follow(graph_, loops_.candidates);
   publish(graph_, followed.map);
   const std::size_t num_open = graph_.keyframes.size() - followed.num_followed;
   cull(followed.redundant, followed.map);
   revisits_.renew(std::move(followed.map), num_open);
+  tell_localization();
+}
+
+void BackEnd::tell_localization() {
+  if (revisits_.is_lost() == is_lost_) return;
+  is_lost_ = revisits_.is_lost();
+  context_.events.on_localization({graph_.keyframes.back().scan_index, is_lost_});
 }
 
 /// An edge that goes with its keyframe gets its verdict now.
@@ -192,8 +205,16 @@ void BackEnd::cull(const std::vector<std::optional<ReplacementKeyframe>>& redund
     const bool stays = !redundant[i] && !redundant[i + 1];
     if (stays || graph_.edges[i].culled_covariance) continue;
     ScanResult& outcome = result_.scans[graph_.keyframes[i + 1].scan_index];
-    judge_edge(graph_, map, i, context_.options.robust.matcher.confidence, context_.sink, outcome);
+    const std::optional<EdgeChosen> chosen =
+        judge_edge(graph_, map, i, context_.options.robust.matcher.confidence, outcome);
+    if (chosen) context_.events.on_edge_chosen(*chosen);
   }
+  KeyframesCulled culled;
+  for (std::size_t i = 0; i < redundant.size(); ++i) {
+    if (redundant[i]) culled.scans.push_back(graph_.keyframes[i].scan_index);
+  }
+  culled.num_left = graph_.keyframes.size() - culled.scans.size();
+  if (!culled.scans.empty()) context_.events.on_culled(culled);
   cull_keyframes(redundant, context_.options, map, graph_, loops_);
 }
 
@@ -204,7 +225,7 @@ void BackEnd::publish(const KeyframeGraph& graph, const OptimizedMap& map) const
 /// Publishes a map of what there is so far, by a copy of the graph: the result of finish() must not depend on it.
 void BackEnd::preview() {
   const RobustOptions& options = context_.options.robust;
-  Quiet quiet(context_.observer);
+  Quiet quiet(context_.events);
   const Execution execution{context_.options.run.threads, quiet};
   KeyframeGraph graph = graph_;
   add_three_scan_scores(options, execution.threads, graph);
@@ -219,9 +240,10 @@ MapResult BackEnd::finish() {
   choose_odometry();
   const Stopwatch watch;
   const RobustOptions& options = context_.options.robust;
-  Finishing finishing(context_.observer);
+  Finishing finishing(context_.events);
   const auto unless_interrupted = [&] {
-    RunObserver& asked = context_.observer.keep_going() ? context_.observer : finishing;
+    RunObserver& events = context_.events;
+    RunObserver& asked = context_.events.keep_going() ? events : finishing;
     return Execution{context_.options.run.threads, asked};
   };
   OptimizedMap map;
@@ -238,10 +260,11 @@ MapResult BackEnd::finish() {
     sweeps = refine_sweeps_of_map(graph_, options, rest, map);
   }
   result_.times.loops_s += watch.seconds();
+  tell_loops(map, context_.events);
   result_.loops = std::move(map.loops);
-  if (context_.sink) trace_verified(graph_, *context_.sink);
-  build_trajectory({graph_, map, sweeps}, num_sweeps_, options.matcher.confidence, context_.sink, result_);
-  result_.interrupted = !context_.observer.keep_going();
+  tell_verified(graph_, context_.events);
+  build_trajectory({graph_, map, sweeps}, num_sweeps_, options.matcher.confidence, context_.events, result_);
+  result_.interrupted = !context_.events.keep_going();
   return std::move(result_);
 }
 

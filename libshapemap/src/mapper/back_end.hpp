@@ -13,20 +13,18 @@
 #include "inference/optimized_map.hpp"
 #include "localization/revisit_tracking.hpp"
 #include "loops/loop_candidates.hpp"
-#include "shapemap/core/observer.hpp"
 #include "shapemap/mapper/map.hpp"
 #include "shapemap/mapper/map_result.hpp"
 #include "shapemap/mapper/mapper_options.hpp"
-#include "shapemap/mapper/trace_sink.hpp"
+#include "shapemap/mapper/mapping_events.hpp"
 #include "shapemap/matching/memory_match_cache.hpp"
 
 namespace shapemap {
 
-/// What the back end of a mapper works with. `sink` and `cache` may be null; a `publish` that is empty is not called.
+/// What the back end of a mapper works with. `cache` may be null; a `publish` that is empty is not called.
 struct BackEndContext {
   const MappingOptions& options;
-  RunObserver& observer;
-  TraceSink* sink = nullptr;
+  MappingEvents& events;
   MatchCache* cache = nullptr;
   /// Receives a map whenever the graph was solved. Maps that are only published change nothing of the result.
   std::function<void(Map)> publish;
@@ -48,7 +46,7 @@ class BackEnd {
   MapResult finish();
 
  private:
-  Execution execution() const { return {context_.options.run.threads, context_.observer}; }
+  Execution execution() const { return {context_.options.run.threads, context_.events}; }
   /// While previews are made, what they match is kept for those to come, and for the result.
   MatchCache* cache() { return preview_cache_ ? &*preview_cache_ : context_.cache; }
   LoopSearch loop_search(const Execution& execution);
@@ -59,6 +57,7 @@ class BackEnd {
   bool optimize_and_cull();
   void follow();
   void cull(const std::vector<std::optional<ReplacementKeyframe>>& redundant, OptimizedMap& map);
+  void tell_localization();
   void publish(const KeyframeGraph& graph, const OptimizedMap& map) const;
   void preview();
 
@@ -69,6 +68,7 @@ class BackEnd {
   LoopCandidates loops_;
   RevisitTracker revisits_;
   bool is_following_ = false;
+  bool is_lost_ = false;
   std::size_t cull_at_;            ///< so many keyframes are needed before any is culled
   std::size_t next_optimization_;  ///< so many keyframes make the graph be solved
   std::size_t next_update_;        ///< so many keyframes make it be looked at

@@ -9,33 +9,15 @@ namespace {
 /// A recording at 40 scans a second waits for minutes before this many do.
 constexpr std::size_t kMostWaiting = 10000;
 
-BackEndContext observed_by(BackEndContext context, RunObserver& observer) {
-  return {context.options, observer, context.sink, context.cache, std::move(context.publish)};
-}
-
 }  // namespace
 
-void BackEndThread::Observer::on_stage(std::string_view stage) {
-  if (is_handed_back_) observer_.on_stage(stage);
-}
-
-void BackEndThread::Observer::on_progress(std::size_t done, std::size_t total) {
-  if (is_handed_back_) observer_.on_progress(done, total);
-}
-
-void BackEndThread::Observer::on_warning(std::string_view message) {
-  if (is_handed_back_) observer_.on_warning(message);
-}
-
-bool BackEndThread::Observer::keep_going() { return !is_stopped_ && (!is_handed_back_ || observer_.keep_going()); }
-
-BackEndThread::BackEndThread(BackEndContext context)
-    : observer_(context.observer), back_end_(observed_by(std::move(context), observer_)) {
+BackEndThread::BackEndThread(BackEndContext context, BackgroundEvents& events)
+    : events_(events), back_end_(std::move(context)) {
   thread_ = std::thread([this] { work(); });
 }
 
 BackEndThread::~BackEndThread() {
-  observer_.stop();
+  events_.stop();
   join();
 }
 
@@ -51,7 +33,7 @@ void BackEndThread::add(TrackedScan scan) {
 MapResult BackEndThread::finish() {
   join();
   if (failure_) std::rethrow_exception(failure_);
-  observer_.hand_back();
+  events_.hand_back();
   return back_end_.finish();
 }
 
@@ -60,7 +42,7 @@ void BackEndThread::work() {
     for (;;) {
       std::unique_lock<std::mutex> lock(mutex_);
       changed_.wait(lock, [this] { return !waiting_.empty() || no_more_come_; });
-      if (waiting_.empty() || !observer_.keep_going()) return;
+      if (waiting_.empty() || !events_.keep_going()) return;
       TrackedScan scan = std::move(waiting_.front());
       waiting_.pop_front();
       lock.unlock();

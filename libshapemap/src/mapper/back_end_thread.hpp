@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -9,6 +8,7 @@
 #include <thread>
 
 #include "back_end.hpp"
+#include "background_events.hpp"
 
 namespace shapemap {
 
@@ -16,8 +16,8 @@ namespace shapemap {
 /// make in the calling thread.
 class BackEndThread {
  public:
-  /// The observer of `context` is asked and told from the calling thread only, in finish().
-  explicit BackEndThread(BackEndContext context);
+  /// `events` are those of `context`.
+  BackEndThread(BackEndContext context, BackgroundEvents& events);
   /// Stops the work early.
   ~BackEndThread();
   BackEndThread(const BackEndThread&) = delete;
@@ -30,28 +30,10 @@ class BackEndThread {
   MapResult finish();
 
  private:
-  /// The observer of the back end: in the thread it only knows whether to stop.
-  class Observer : public RunObserver {
-   public:
-    explicit Observer(RunObserver& observer) : observer_(observer) {}
-    void on_stage(std::string_view stage) override;
-    void on_progress(std::size_t done, std::size_t total) override;
-    void on_warning(std::string_view message) override;
-    bool keep_going() override;
-
-    void stop() { is_stopped_ = true; }
-    void hand_back() { is_handed_back_ = true; }
-
-   private:
-    RunObserver& observer_;
-    std::atomic<bool> is_stopped_{false};
-    std::atomic<bool> is_handed_back_{false};
-  };
-
   void work();
   void join();
 
-  Observer observer_;
+  BackgroundEvents& events_;
   BackEnd back_end_;
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -5,11 +5,11 @@
 
 namespace shapemap {
 
-void judge_edge(const KeyframeGraph& graph, const OptimizedMap& map, std::size_t edge, const ConfidenceOptions& options,
-                TraceSink* sink, ScanResult& outcome) {
+std::optional<EdgeChosen> judge_edge(const KeyframeGraph& graph, const OptimizedMap& map, std::size_t edge,
+                                     const ConfidenceOptions& options, ScanResult& outcome) {
   outcome.loop_constrained = map.loop_constrained[edge];
   const std::size_t before = graph.keyframes[edge].scan_index;
-  if (graph.keyframes[edge].session != outcome.session) return;  // there is nothing to align to
+  if (graph.keyframes[edge].session != outcome.session) return std::nullopt;  // there is nothing to match to
   outcome.reference = before;
   const OdometryEdge& of = graph.edges[edge];
   const std::vector<MatchCandidate>& candidates = of.candidates;
@@ -30,7 +30,8 @@ void judge_edge(const KeyframeGraph& graph, const OptimizedMap& map, std::size_t
     outcome.reason = outcome.loop_constrained ? "the rest of the map speaks against it"
                                               : "less probable than it takes not to split the map";
   }
-  if (sink && !candidates.empty()) sink->on_choice({before, outcome.scan_index, taken, margin});
+  if (candidates.empty()) return std::nullopt;
+  return EdgeChosen{before, outcome.scan_index, taken, margin};
 }
 
 }  // namespace shapemap

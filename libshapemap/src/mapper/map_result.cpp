@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/mapper/map_result.hpp"
 
+#include <algorithm>
+
 namespace shapemap {
 
 bool ScanResult::was_aligned() const { return paper || match.status != MatchStatus::kNoShape || !reason.empty(); }
@@ -29,6 +31,12 @@ std::string MapResult::why_not_in_map(const ScanResult& scan) const {
   if (scan.component == largest_component) return "";
   return scan.reason + (scan.reason.empty() ? "" : "; ") + "in fragment " + std::to_string(scan.component) +
          ", which nothing ties to the map";
+}
+
+int largest_component(const std::vector<Component>& components) {
+  const auto fewer = [](const Component& a, const Component& b) { return a.scans.size() < b.scans.size(); };
+  const auto found = std::max_element(components.begin(), components.end(), fewer);
+  return found == components.end() ? -1 : static_cast<int>(found - components.begin());
 }
 
 }  // namespace shapemap

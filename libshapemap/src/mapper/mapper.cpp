@@ -17,7 +17,8 @@ namespace {
 /// The maps that were published. Any thread may use it.
 class Published {
  public:
-  void add(Map map) {
+  /// Returns the map with its version.
+  std::shared_ptr<const Map> add(Map map) {
     const std::lock_guard<std::mutex> lock(mutex_);
     map.version = latest_ ? latest_->version + 1 : 1;
     changed_.resize(map.scans.size(), 0);
@@ -26,6 +27,7 @@ class Published {
       if (map.scans[i] != before) changed_[i] = map.version;
     }
     latest_ = std::make_shared<const Map>(std::move(map));
+    return latest_;
   }
 
   std::shared_ptr<const Map> latest() const {
@@ -55,29 +57,21 @@ void require_plausible(const Scan& scan, std::size_t number) {
   if (!fault.empty()) throw InputError("scan " + std::to_string(number) + ": " + fault);
 }
 
-/// The first of the components with most scans; -1: there is none.
-int largest_component(const std::vector<Component>& components) {
-  int largest = -1;
-  for (std::size_t k = 0; k < components.size(); ++k) {
-    if (largest < 0 || components[k].scans.size() > components[static_cast<std::size_t>(largest)].scans.size()) {
-      largest = static_cast<int>(k);
-    }
-  }
-  return largest;
-}
-
 }  // namespace
 
 class Mapper::Implementation {
  public:
-  Implementation(const MappingOptions& options, const LiveOptions& live, RunObserver* observer, TraceSink* sink,
-                 MatchCache* cache)
-      : options_(options), sink_(sink), front_end_(options_, cache), trail_(options_.robust.matcher.confidence) {
-    BackEndContext context{options_, observer ? *observer : nobody_, sink, cache, {}};
-    if (live.publish) context.publish = [this](Map map) { published_.add(std::move(map)); };
+  Implementation(const MappingOptions& options, const LiveOptions& live, MappingEvents* events, MatchCache* cache)
+      : options_(options),
+        events_(events ? *events : nobody_),
+        front_end_(options_, cache),
+        trail_(options_.robust.matcher.confidence) {
+    BackEndContext context{options_, events_, cache, {}};
+    if (live.publish) context.publish = [this](Map map) { publish(std::move(map)); };
     if (live.in_background) {
-      thread_ = std::make_unique<BackEndThread>(std::move(context));
+      thread_ = std::make_unique<BackEndThread>(std::move(context), events_);
     } else {
+      events_.hand_back();
       back_end_ = std::make_unique<BackEnd>(std::move(context));
     }
   }
@@ -91,8 +85,9 @@ class Mapper::Implementation {
     }
     std::vector<ScanUpdate> updates;
     for (TrackedScan& scan : front_end_.track(scans)) {
-      if (sink_) sink_->on_shape(scan.scan_index, scan.view->points);
+      events_.on_shape(scan.scan_index, scan.view->points);
       updates.push_back(trail_.add(scan, published_.latest().get()));
+      events_.on_scan(updates.back());
       thread_ ? thread_->add(std::move(scan)) : back_end_->add(std::move(scan));
     }
     return updates;
@@ -105,16 +100,18 @@ class Mapper::Implementation {
     result.times.shape_s += front_end_.shape_s();
     result.times.align_s += front_end_.match_s();
     result.largest_component = largest_component(result.components);
-    published_.add(map_snapshot(result));
+    publish(map_snapshot(result));
     return result;
   }
 
   const Published& published() const { return published_; }
 
  private:
+  void publish(Map map) { events_.on_map(*published_.add(std::move(map))); }
+
   MappingOptions options_;
-  RunObserver nobody_;
-  TraceSink* sink_;
+  MappingEvents nobody_;
+  BackgroundEvents events_;
   FrontEnd front_end_;
   OdometryTrail trail_;
   Published published_;
@@ -123,10 +120,9 @@ class Mapper::Implementation {
   std::unique_ptr<BackEndThread> thread_;  ///< ends before what it uses
 };
 
-Mapper::Mapper(const MappingOptions& options, const LiveOptions& live, RunObserver* observer, TraceSink* sink,
-               MatchCache* cache) {
+Mapper::Mapper(const MappingOptions& options, const LiveOptions& live, MappingEvents* events, MatchCache* cache) {
   validate_all(options);
-  implementation_ = std::make_unique<Implementation>(options, live, observer, sink, cache);
+  implementation_ = std::make_unique<Implementation>(options, live, events, cache);
 }
 
 Mapper::~Mapper() = default;

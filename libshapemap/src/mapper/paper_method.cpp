@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <utility>
 
-#include "methods.hpp"
+#include "paper_method.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/paper/paper_mapper.hpp"
 
@@ -41,12 +41,11 @@ ScanResult scan_result(PaperScanResult placed) {
 
 }  // namespace
 
-void map_by_paper(const Log& log, const MappingOptions& options, RunObserver& observer, PaperListener* listener,
-                  MapResult& result) {
-  PaperMapper mapper({options.returns, options.polylines, options.shape, options.paper},
-                     {options.run.threads, observer}, listener);
-  observer.on_stage("chain");
-  const bool is_whole = push_scans(log, observer, mapper);
+void map_by_paper(const Log& log, const MappingOptions& options, MappingEvents& events, MapResult& result) {
+  PaperMapper mapper({options.returns, options.polylines, options.shape, options.paper}, {options.run.threads, events},
+                     &events);
+  events.on_stage("chain");
+  const bool is_whole = push_scans(log, events, mapper);
   PaperMapResult placed = std::move(mapper).result();
   result.components = std::move(placed.components);
   result.times.shape_s += placed.shape_s;

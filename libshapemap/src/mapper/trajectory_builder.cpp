@@ -22,13 +22,13 @@ Eigen::Matrix3d covariance_in_map(const ScanMatch& match, const Pose2& map_from_
 class TrajectoryBuilder {
  public:
   TrajectoryBuilder(const SolvedGraph& solved, const std::vector<std::size_t>& num_sweeps,
-                    const ConfidenceOptions& options, TraceSink* sink, MapResult& result)
+                    const ConfidenceOptions& options, MappingEvents& events, MapResult& result)
       : graph_(solved.graph),
         map_(solved.map),
         sweeps_(solved.sweeps),
         num_sweeps_(num_sweeps),
         options_(options),
-        sink_(sink),
+        events_(events),
         result_(result) {}
 
   void run() {
@@ -47,7 +47,8 @@ class TrajectoryBuilder {
   void place_keyframe(std::size_t i) {
     ScanResult& outcome = result_.scans[graph_.keyframes[i].scan_index];
     if (i > 0 && !graph_.edges[i - 1].culled_covariance) {
-      judge_edge(graph_, map_, i - 1, options_, sink_, outcome);
+      const std::optional<EdgeChosen> chosen = judge_edge(graph_, map_, i - 1, options_, outcome);
+      if (chosen) events_.on_edge_chosen(*chosen);
     }
     outcome.component = component_of(i);
     outcome.starts_component = i == 0 || map_.component[i] != map_.component[i - 1];
@@ -101,7 +102,7 @@ class TrajectoryBuilder {
   const SweepCorrections& sweeps_;
   const std::vector<std::size_t>& num_sweeps_;
   const ConfidenceOptions& options_;
-  TraceSink* sink_;
+  MappingEvents& events_;
   MapResult& result_;
   std::map<std::size_t, int> number_of_component_;
 };
@@ -109,8 +110,8 @@ class TrajectoryBuilder {
 }  // namespace
 
 void build_trajectory(const SolvedGraph& solved, const std::vector<std::size_t>& num_sweeps,
-                      const ConfidenceOptions& options, TraceSink* sink, MapResult& result) {
-  TrajectoryBuilder(solved, num_sweeps, options, sink, result).run();
+                      const ConfidenceOptions& options, MappingEvents& events, MapResult& result) {
+  TrajectoryBuilder(solved, num_sweeps, options, events, result).run();
 }
 
 }  // namespace shapemap

@@ -8,7 +8,7 @@
 #include "inference/optimized_map.hpp"
 #include "inference/sweep_poses.hpp"
 #include "shapemap/mapper/map_result.hpp"
-#include "shapemap/mapper/trace_sink.hpp"
+#include "shapemap/mapper/mapping_events.hpp"
 #include "shapemap/matching/scan_matcher.hpp"
 
 namespace shapemap {
@@ -21,8 +21,8 @@ struct SolvedGraph {
 };
 
 /// Places all scans in `result`, which has an entry for each, by the poses of their keyframes: fills in the components,
-/// and what became of each scan. `num_sweeps` has an entry for each scan; `sink` may be null.
+/// and what became of each scan. `num_sweeps` has an entry for each scan.
 void build_trajectory(const SolvedGraph& solved, const std::vector<std::size_t>& num_sweeps,
-                      const ConfidenceOptions& options, TraceSink* sink, MapResult& result);
+                      const ConfidenceOptions& options, MappingEvents& events, MapResult& result);
 
 }  // namespace shapemap

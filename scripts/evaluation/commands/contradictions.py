@@ -77,12 +77,12 @@ def run_log(log: Path, cli: Path, more: list[str]) -> LogOutcome:
         except Failure as failure:
             return LogOutcome(log.name, fault=str(failure))
     placed = [entry for entry in report["scans"] if entry["map_from_robot"]]
-    found = tuple(entry["index"] for entry in placed if entry["agreement"]["contradicts_map"])
+    found = tuple(entry["index"] for entry in placed if entry["consistency"]["contradicts_map"])
     shares = []
     for entry in placed:
-        against = entry["agreement"]["through"] + entry["agreement"]["in_free"]
-        shares.append(against / max(against + entry["agreement"]["agree"], 1e-9))
-    seconds = (report["seconds"]["map"], report["seconds"]["agreement"])
+        against = entry["consistency"]["through"] + entry["consistency"]["in_free"]
+        shares.append(against / max(against + entry["consistency"]["agree"], 1e-9))
+    seconds = (report["seconds"]["map"], report["seconds"]["consistency"])
     return LogOutcome(log.name, len(placed), found, tuple(shares), seconds)
 
 

@@ -52,7 +52,7 @@ def lone_links(
     links = []
     for position in report["scans"]:
         alignment = position["alignment"] or {}
-        if not position["is_keyframe"] or position["held_by_loops"] or not alignment.get("ref_from_query"):
+        if not position["is_keyframe"] or position["loop_constrained"] or not alignment.get("ref_from_query"):
             continue
         step = compose(inverse(truth[alignment["reference"]]), truth[position["index"]])
         found = pose_from(alignment["ref_from_query"])

@@ -107,7 +107,7 @@ def stage_error(ref_from_query: Array, corrections: Array, truth: PairTruth) -> 
 def stage_errors(alignment: Mapping[str, Any], truth: PairTruth) -> dict[str, StageError]:
     """Errors of an alignment that has a pose, by stage."""
     none = np.zeros_like(truth.query_from_nominal)
-    found = alignment["query_from_sub_scan"]
+    found = alignment["query_from_sweep"]
     corrections = np.array([pose_from(pose) for pose in found]) if found else none
     if corrections.shape != none.shape:
         raise ValueError(f"the report has {len(corrections)} sub-scans where the log has {len(none)}")

@@ -25,7 +25,7 @@ def placed_points(poses: Array, points: list[Array]) -> Array:
 def found_points(alignment: Mapping[str, Any], simulation: Simulation, index: int) -> Array:
     """The query's points `[n, 2]` in the reference's frame, as the report places them."""
     truth = pair_truth(simulation, index)
-    found = alignment["query_from_sub_scan"]
+    found = alignment["query_from_sweep"]
     corrections = np.array([pose_from(p) for p in found]) if found else np.zeros_like(truth.query_from_nominal)
     sub_scans = compose(corrections, truth.query_from_nominal)
     return placed_points(compose(pose_from(alignment["ref_from_query"]), sub_scans), truth.points)

@@ -20,7 +20,7 @@ FILES = {"trajectory": "map.tum", "picture": "map.png", "map.yaml": "map.yaml", 
 SCANS = {
     "motions": (
         *("index", "log", "index_in_whole_log", "component", "starts_component", "map_from_robot"),
-        *("status", "reference", "ref_from_query", "query_from_sub_scan"),
+        *("status", "reference", "ref_from_query", "query_from_sweep"),
     ),
     "probabilities": ("probability",),
     "covariances": ("covariance",),

@@ -19,6 +19,10 @@ RENAMED = {
     "fragment": "component",
     "starts_fragment": "starts_component",
     "num_positions": "num_scans",
+    "num_sub_scans": "num_sweeps",
+    "query_from_sub_scan": "query_from_sweep",
+    "held_by_loops": "loop_constrained",
+    "agreement": "consistency",
 }
 
 

@@ -134,7 +134,7 @@ def judged_scans(run: SpoiltRun, report: Mapping[str, Any]) -> list[JudgedScan]:
     wrong = misplaced(found, run.simulation.drive.map_from_robot[indices])
     scans = []
     for entry, is_wrong in zip(placed, wrong):
-        said = entry["agreement"]
+        said = entry["consistency"]
         against = said["through"] + said["in_free"]
         known = against + said["agree"]
         share = against / known if known > 0.0 else float("nan")

@@ -59,7 +59,7 @@ def perfect_report(arena: Simulation) -> dict[str, Any]:
                     "shape_ref_from_query": pose,
                     "icp_ref_from_query": pose,
                     "ref_from_query": pose,
-                    "query_from_sub_scan": [fields(c) for c in corrections],
+                    "query_from_sweep": [fields(c) for c in corrections],
                 },
             }
         )
@@ -92,7 +92,7 @@ def test_a_known_mistake_is_measured_at_its_stage(arena: Simulation) -> None:
 
 def test_corrections_all_one_way_are_an_error_of_the_pose(arena: Simulation) -> None:
     report = perfect_report(arena)
-    report["scans"][1]["alignment"]["query_from_sub_scan"] = [fields(np.array([0.4, 0.0, 0.0]))] * 4
+    report["scans"][1]["alignment"]["query_from_sweep"] = [fields(np.array([0.4, 0.0, 0.0]))] * 4
     pair = evaluate_pairs(arena, report, np.array([0.5, 0.6]))[0]
     assert [pair.verdict(stage) for stage in STAGES] == ["ok", "ok", "wrong"]
     assert pair.errors is not None
@@ -103,7 +103,7 @@ def test_a_method_of_one_stage_has_one_verdict(arena: Simulation) -> None:
     report = perfect_report(arena)
     for entry, status in zip(report["scans"][1:], ("ok", "ambiguous")):
         entry["alignment"] |= {"status": status, "shape_ref_from_query": None, "icp_ref_from_query": None}
-        entry["alignment"]["query_from_sub_scan"] = []
+        entry["alignment"]["query_from_sweep"] = []
     pairs = evaluate_pairs(arena, report, np.array([0.5, 0.6]))
     assert stages_of(pairs) == ROBUST_STAGES
     assert [pair.final_verdict for pair in pairs] == ["ok", "ok"]
@@ -130,7 +130,7 @@ def test_rejected_and_missing_pairs_are_not_wrong_poses(arena: Simulation) -> No
 
 def test_a_report_of_another_log_is_refused(arena: Simulation) -> None:
     report = perfect_report(arena)
-    report["scans"][1]["alignment"]["query_from_sub_scan"].pop()
+    report["scans"][1]["alignment"]["query_from_sweep"].pop()
     with pytest.raises(ValueError, match="3 sub-scans where the log has 4"):
         evaluate_pairs(arena, report, np.array([0.5, 0.6]))
 

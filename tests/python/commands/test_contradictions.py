@@ -75,9 +75,9 @@ def test_scans_outside_of_the_map_are_not_judged() -> None:
     for k, pose in enumerate(run.simulation.drive.map_from_robot):
         fields = {"x_m": pose[0], "y_m": pose[1], "theta_deg": np.rad2deg(pose[2])}
         said = {"agree": 0.6, "through": 0.1, "in_free": 0.2, "contradicts_map": k == 4}
-        entries.append({"index": k, "map_from_robot": fields, "agreement": said})
-    entries[3] |= {"map_from_robot": None, "agreement": None}
-    entries[5]["agreement"] = {"agree": 0.0, "through": 0.0, "in_free": 0.0, "contradicts_map": False}
+        entries.append({"index": k, "map_from_robot": fields, "consistency": said})
+    entries[3] |= {"map_from_robot": None, "consistency": None}
+    entries[5]["consistency"] = {"agree": 0.0, "through": 0.0, "in_free": 0.0, "contradicts_map": False}
     scans = judged_scans(run, {"scans": entries})
     assert [s.index for s in scans] == [0, 1, 2, 4, 5, 6, 7, 8, 9, 10, 11]
     assert [s.index for s in scans if s.flagged] == [4]

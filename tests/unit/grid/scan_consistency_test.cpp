@@ -229,7 +229,7 @@ TEST(ScanConsistency, BothMethodsJudgeTheirScans) {
   MappingOptions robust;
   robust.robust.keyframes.step_m = 0.1;
   for (const MappingOptions& options : {robust, test::paper_options()}) {
-    RunObserver nobody;
+    MappingEvents nobody;
     const MapResult result = map_log(log, options, nobody);
     ASSERT_EQ(result.placed().size(), log.scans.size());
     for (const PlacedScan& place : result.placed()) EXPECT_GT(place.consistency.agree, 0.7);

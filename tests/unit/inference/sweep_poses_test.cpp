@@ -14,7 +14,7 @@ MapResult mapped(const Log& log, int rounds) {
   options.run.threads = 1;
   options.robust.sweep_refinement.rounds = rounds;
   options.robust.edge_verification.doubt_below = 0.0;
-  RunObserver nobody;
+  MappingEvents nobody;
   return map_log(log, options, nobody);
 }
 

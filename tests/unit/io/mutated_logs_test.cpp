@@ -258,8 +258,8 @@ class MutatedStates : public testing::Test {
   void map_with(StateOpening opening, std::size_t& num_resumed) {
     MatchCacheFile state(path_, opening, log_, options_);
     num_resumed = state.num_resumed();
-    RunObserver observer;
-    map_log(log_, options_, observer, nullptr, &state);
+    MappingEvents observer;
+    map_log(log_, options_, observer, &state);
   }
 
   /// The place where the numbers of a candidate begin, and the record that it belongs to.

@@ -70,21 +70,21 @@ class Report : public testing::Test {
 
 TEST_F(Report, TellsWhatBecameOfEachScan) {
   const Json report = parsed();
-  EXPECT_EQ(report["num_positions"], 3);
+  EXPECT_EQ(report["num_scans"], 3);
   EXPECT_EQ(report["num_placed"], 2);
-  const Json& first = report["positions"][0];
+  const Json& first = report["scans"][0];
   EXPECT_TRUE(first["alignment"].is_null()) << "there was nothing to align to";
   EXPECT_EQ(first["map_from_robot"]["x_m"], 0.0);
-  const Json& second = report["positions"][1];
+  const Json& second = report["scans"][1];
   EXPECT_EQ(second["index_in_whole_log"], 7);
   EXPECT_EQ(second["alignment"]["status"], "ok");
   EXPECT_DOUBLE_EQ(second["alignment"]["ref_from_query"]["theta_deg"], 90.0);
   EXPECT_EQ(second["alignment"]["shape_ref_from_query"]["x_m"], 0.9);
   EXPECT_EQ(second["alignment"]["overlap"], 77);
   EXPECT_EQ(second["alignment"]["overlap_ratio"], 0.75);
-  EXPECT_EQ(second["alignment"]["query_from_sub_scan"][0]["x_m"], 0.01);
+  EXPECT_EQ(second["alignment"]["query_from_sweep"][0]["x_m"], 0.01);
   EXPECT_EQ(second["map_from_robot"]["y_m"], 2.0);
-  const Json& third = report["positions"][2];
+  const Json& third = report["scans"][2];
   EXPECT_EQ(third["alignment"]["status"], "too-few-correspondences");
   EXPECT_EQ(third["reason"], "only 3 of 10");
   EXPECT_TRUE(third["alignment"]["ref_from_query"].is_null());
@@ -93,12 +93,12 @@ TEST_F(Report, TellsWhatBecameOfEachScan) {
 }
 
 TEST_F(Report, TellsWhatThePicturesShowAndHowFarTheyAreTurned) {
-  const Json plain = parsed()["fragments"];
+  const Json plain = parsed()["components"];
   EXPECT_EQ(plain[0]["picture"], Json::parse(R"({"num_returns": 1000, "num_outside": 12})"));
   EXPECT_TRUE(plain[1]["picture"].is_null()) << "it was not drawn";
   EXPECT_TRUE(plain[0]["walls"].is_null()) << "it was not asked for";
   walls_ = {{-30 * kDegree, 0.8, 0.1}, {20 * kDegree, 0.3, 0.2}};
-  const Json turned = parsed()["fragments"];
+  const Json turned = parsed()["components"];
   EXPECT_NEAR(turned[0]["walls"]["turned_deg"], 30.0, 1e-9);
   EXPECT_EQ(turned[0]["walls"]["share"], 0.8);
   EXPECT_EQ(turned[1]["walls"]["turned_deg"], 0.0) << "no direction dominates";
@@ -107,7 +107,7 @@ TEST_F(Report, TellsWhatThePicturesShowAndHowFarTheyAreTurned) {
 }
 
 TEST_F(Report, OfThePapersMethodHasNoProbability) {
-  const Json match = parsed()["positions"][1]["alignment"];
+  const Json match = parsed()["scans"][1]["alignment"];
   EXPECT_TRUE(match["probability"].is_null());
   EXPECT_TRUE(match["covariance"].is_null());
   EXPECT_TRUE(match["ranked"].empty());
@@ -122,7 +122,7 @@ TEST_F(Report, TellsHowSureAPoseIsAndWhatElseItMightBe) {
     match.probability = 0.75;
     match.covariance << 1.0, 2.0, 3.0, 2.0, 5.0, 6.0, 3.0, 6.0, 9.0;
     match.ranked = {{match.ref_from_query, 3.5, 0.6, 0.1}, {{-1.0, 0.0, 0.0}, 3.25, 0.5, 0.2}};
-    const Json shown = parsed()["positions"][1]["alignment"];
+    const Json shown = parsed()["scans"][1]["alignment"];
     EXPECT_EQ(shown["status"], enum_name(status));
     EXPECT_EQ(shown["ref_from_query"]["x_m"], 1.0) << "a pose in doubt is a pose";
     EXPECT_TRUE(shown["shape_ref_from_query"].is_null());
@@ -139,20 +139,20 @@ TEST_F(Report, TellsHowSureAPoseIsAndWhatElseItMightBe) {
 
 TEST_F(Report, ShowsNoPoseWhereNoneIsTrusted) {
   result_.scans[1].paper->status = PaperStatus::kTooLittleOverlap;
-  EXPECT_TRUE(parsed()["positions"][1]["alignment"]["ref_from_query"].is_null());
+  EXPECT_TRUE(parsed()["scans"][1]["alignment"]["ref_from_query"].is_null());
   result_.scans[1].paper.reset();
   ScanMatch& match = result_.scans[1].match;
   match.status = MatchStatus::kTooLittleOverlap;
   match.ref_from_query = {1.0, 2.0, kPi / 2};
   match.reason = result_.scans[1].reason = "they share nothing";
-  EXPECT_EQ(parsed()["positions"][1]["alignment"]["status"], "too-little-overlap");
-  EXPECT_TRUE(parsed()["positions"][1]["alignment"]["ref_from_query"].is_null());
+  EXPECT_EQ(parsed()["scans"][1]["alignment"]["status"], "too-little-overlap");
+  EXPECT_TRUE(parsed()["scans"][1]["alignment"]["ref_from_query"].is_null());
 }
 
 TEST_F(Report, ListsComponentsAndWhichOneIsTheMap) {
-  const Json components = parsed()["fragments"];
+  const Json components = parsed()["components"];
   ASSERT_EQ(components.size(), 2U);
-  EXPECT_EQ(components[0]["num_positions"], 2);
+  EXPECT_EQ(components[0]["num_scans"], 2);
   EXPECT_EQ(components[0]["last_index"], 1);
   EXPECT_EQ(components[0]["is_map"], true);
   EXPECT_EQ(components[1]["first_index"], 2);
@@ -164,21 +164,21 @@ TEST_F(Report, TellsWhichLogEachScanIsFrom) {
   log_.starts = {1};
   const Json report = parsed();
   ASSERT_EQ(report["logs"].size(), 2U);
-  EXPECT_EQ(report["logs"][0]["num_positions"], 1);
+  EXPECT_EQ(report["logs"][0]["num_scans"], 1);
   EXPECT_EQ(report["logs"][0]["num_placed"], 1);
   EXPECT_EQ(report["logs"][1]["path"], "other.rawlog");
   EXPECT_EQ(report["logs"][1]["format"], "rawlog");
   EXPECT_EQ(report["logs"][1]["first_index"], 1);
-  EXPECT_EQ(report["logs"][1]["num_positions"], 2);
+  EXPECT_EQ(report["logs"][1]["num_scans"], 2);
   EXPECT_EQ(report["logs"][1]["num_placed"], 1);
   EXPECT_EQ(report["logs"][1]["duration_s"], 1.5);
-  EXPECT_EQ(report["positions"][0]["log"], 0);
-  EXPECT_EQ(report["positions"][1]["log"], 1);
-  EXPECT_EQ(report["positions"][1]["index_in_whole_log"], 5) << "the first that is left of the second log";
-  EXPECT_EQ(report["positions"][2]["index_in_whole_log"], 7);
-  EXPECT_EQ(report["fragments"][0]["logs"],
-            Json::parse(R"([{"log": 0, "num_positions": 1}, {"log": 1, "num_positions": 1}])"));
-  EXPECT_EQ(report["fragments"][1]["logs"], Json::parse(R"([{"log": 1, "num_positions": 1}])"));
+  EXPECT_EQ(report["scans"][0]["log"], 0);
+  EXPECT_EQ(report["scans"][1]["log"], 1);
+  EXPECT_EQ(report["scans"][1]["index_in_whole_log"], 5) << "the first that is left of the second log";
+  EXPECT_EQ(report["scans"][2]["index_in_whole_log"], 7);
+  EXPECT_EQ(report["components"][0]["logs"],
+            Json::parse(R"([{"log": 0, "num_scans": 1}, {"log": 1, "num_scans": 1}])"));
+  EXPECT_EQ(report["components"][1]["logs"], Json::parse(R"([{"log": 1, "num_scans": 1}])"));
 }
 
 TEST_F(Report, TellsLoopsAndWhatTheyHold) {
@@ -191,8 +191,8 @@ TEST_F(Report, TellsLoopsAndWhatTheyHold) {
   EXPECT_EQ(report["loops"][0]["b"], 1);
   EXPECT_DOUBLE_EQ(report["loops"][0]["a_from_b"]["theta_deg"], 90.0);
   EXPECT_EQ(report["loops"][0]["strength"], 12.5);
-  EXPECT_EQ(report["positions"][0]["held_by_loops"], false);
-  EXPECT_EQ(report["positions"][1]["held_by_loops"], true);
+  EXPECT_EQ(report["scans"][0]["loop_constrained"], false);
+  EXPECT_EQ(report["scans"][1]["loop_constrained"], true);
   EXPECT_EQ(report["seconds"]["loops"], 0.25);
   EXPECT_EQ(report["interrupted"], false);
 }
@@ -206,16 +206,16 @@ TEST_F(Report, TellsHowEachScanGoesWithTheRest) {
   const Json report = parsed();
   EXPECT_EQ(report["num_contradicting"], 1) << "of those in the map";
   const Json wanted = Json::parse(R"({"agree": 0.5, "through": 0.25, "in_free": 0.125, "contradicts_map": true})");
-  EXPECT_EQ(report["positions"][1]["agreement"], wanted);
-  EXPECT_EQ(report["positions"][0]["agreement"]["contradicts_map"], false);
-  EXPECT_EQ(report["positions"][2]["agreement"]["in_free"], 1.0) << "with its own component";
-  EXPECT_TRUE(report["positions"][3]["agreement"].is_null()) << "in no component";
-  EXPECT_EQ(report["seconds"]["agreement"], 0.5);
+  EXPECT_EQ(report["scans"][1]["consistency"], wanted);
+  EXPECT_EQ(report["scans"][0]["consistency"]["contradicts_map"], false);
+  EXPECT_EQ(report["scans"][2]["consistency"]["in_free"], 1.0) << "with its own component";
+  EXPECT_TRUE(report["scans"][3]["consistency"].is_null()) << "in no component";
+  EXPECT_EQ(report["seconds"]["consistency"], 0.5);
 }
 
 TEST_F(Report, TellsTheKeyframeThatAScanIsMatchedWith) {
   result_.scans[1].is_keyframe = false;
-  const Json scans = parsed()["positions"];
+  const Json scans = parsed()["scans"];
   EXPECT_EQ(scans[0]["is_keyframe"], true);
   EXPECT_EQ(scans[1]["is_keyframe"], false);
   EXPECT_EQ(scans[1]["alignment"]["reference"], 0);
@@ -250,7 +250,7 @@ TEST_F(Report, NamesVersionsCostsAndTheLogWhateverItsBytes) {
   EXPECT_EQ(report["seconds"]["wall"], 6.5);
   EXPECT_EQ(report["peak_memory_mib"], 50.0);
   ASSERT_EQ(report["milestones"].size(), 1U);
-  EXPECT_EQ(report["milestones"][0]["num_positions"], 1008);
+  EXPECT_EQ(report["milestones"][0]["num_scans"], 1008);
   EXPECT_EQ(report["milestones"][0]["wall_s"], 4.0);
   EXPECT_EQ(report["milestones"][0]["cpu_s"], 7.5);
   EXPECT_EQ(report["milestones"][0]["peak_memory_mib"], 40.0);

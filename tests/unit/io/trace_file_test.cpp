@@ -32,9 +32,8 @@ class TraceOfAWalk : public testing::Test {
   std::string path(const char* name = "trace.jsonl") const { return folder_.path(name); }
 
   MapResult write(const std::string& to) const {
-    RunObserver nobody;
     TraceFile trace(to, {{"odd\xFF.log"}, log_, options_, reading_, selection_});
-    MapResult result = map_log(log_, options_, nobody, &trace);
+    MapResult result = map_log(log_, options_, trace);
     trace.commit(result);
     return result;
   }
@@ -57,7 +56,7 @@ class TraceOfAWalk : public testing::Test {
 };
 
 /// Compares the pairs that the file names with those of a match that is made anew, point by point.
-struct Comparison : TraceSink {
+struct Comparison : MappingEvents {
   void on_alignment(const TracedAlignment& traced) override {
     all.push_back(traced.steps.rotations.at(static_cast<std::size_t>(traced.steps.best_rotation)));
     targets.push_back(traced.targets);
@@ -73,8 +72,7 @@ TEST_F(TraceOfAWalk, NamesThePointsOfEachPair) {
     write(path());
     auto traced = records(path());
     Comparison comparison;
-    RunObserver nobody;
-    map_log(log_, options_, nobody, &comparison);
+    map_log(log_, options_, comparison);
     ASSERT_EQ(traced["alignment"].size(), 3U);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto& record = traced["alignment"][k];

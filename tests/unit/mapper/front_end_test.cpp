@@ -39,7 +39,7 @@ Log log_of(const std::vector<Pose2>& poses, const test::Scanner& scanner = test:
 }
 
 MapResult mapped(const Log& log, const MappingOptions& options = {}) {
-  RunObserver nobody;
+  MappingEvents nobody;
   return map_log(log, options, nobody);
 }
 
@@ -191,7 +191,7 @@ TEST(FrontEnd, PosesThatAPositionMayHaveAreApart) {
   }
 }
 
-struct Stopper : RunObserver {
+struct Stopper : MappingEvents {
   explicit Stopper(std::size_t times) : stop_at(times) {}
   bool keep_going() override { return ++asked < stop_at; }
   void on_stage(std::string_view stage) override { is_chain = stage == "chain"; }

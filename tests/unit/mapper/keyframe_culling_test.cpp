@@ -21,7 +21,7 @@ using test::two_laps;
 MappingOptions quick() { return test::quick_mapping(); }
 
 MapResult mapped(const Log& log, const MappingOptions& options) {
-  RunObserver nobody;
+  MappingEvents nobody;
   return map_log(log, options, nobody);
 }
 

@@ -53,7 +53,7 @@ test::Scanner four_sweeps() {
 }
 
 MapResult mapped(const Log& log, const MappingOptions& options = test::paper_options()) {
-  RunObserver nobody;
+  MappingEvents nobody;
   return map_log(log, options, nobody);
 }
 
@@ -180,7 +180,7 @@ TEST(MapLog, OfEquallyLargeFragmentsTheFirstMakesTheMap) {
 }
 
 /// Remembers what it was told and stops when asked for the `stop_at`th time after `done` positions.
-struct Watcher : RunObserver {
+struct Watcher : MappingEvents {
   explicit Watcher(std::size_t stop, std::size_t done = 0) : stop_at(stop), stop_after(done) {}
   void on_progress(std::size_t done, std::size_t total) override { progress.emplace_back(done, total); }
   bool keep_going() override { return progress.size() < stop_after || ++asked < stop_at; }

@@ -26,7 +26,7 @@ MappingOptions quick() {
 }
 
 MapResult mapped(const Log& log, const MappingOptions& options = quick()) {
-  RunObserver nobody;
+  MappingEvents nobody;
   return map_log(log, options, nobody);
 }
 

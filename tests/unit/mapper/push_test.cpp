@@ -63,7 +63,7 @@ Pushed pushed(const Log& log, const MappingOptions& options, const LiveOptions& 
 }
 
 MapResult mapped(const Log& log, const MappingOptions& options) {
-  RunObserver nobody;
+  MappingEvents nobody;
   return map_log(log, options, nobody);
 }
 

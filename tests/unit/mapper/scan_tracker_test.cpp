@@ -182,7 +182,7 @@ std::size_t num_keyframes(const MapResult& result) {
 TEST(ScanTracker, OfADenseLogFewScansAreKeyframesAndAllHaveAPose) {
   constexpr std::size_t kCount = 48;
   const Log log = dense_log(kCount);
-  RunObserver nobody;
+  MappingEvents nobody;
   MappingOptions options;
   const MapResult result = map_log(log, options, nobody);
   EXPECT_LE(num_keyframes(result), kCount / 5);

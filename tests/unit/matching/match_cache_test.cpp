@@ -80,8 +80,8 @@ MappingOptions doubtful() {
 MapResult mapped(const Log& log, MatchCache* store, int threads = 2) {
   MappingOptions options = doubtful();
   options.run.threads = threads;
-  RunObserver nobody;
-  return map_log(log, options, nobody, nullptr, store);
+  MappingEvents nobody;
+  return map_log(log, options, nobody, store);
 }
 
 void expect_same_bits(const MapResult& a, const MapResult& b) {

@@ -149,7 +149,7 @@ TEST(Plausibility, MappingNamesTheScanOfALogThatWasMadeByHand) {
   log.scans.resize(5);
   for (Scan& scan : log.scans) scan.sweeps = {half_circle()};
   log.scans[3].sweeps[0].first_angle_rad = kNan;
-  RunObserver observer;
+  MappingEvents observer;
   EXPECT_THAT(refusal([&] { map_log(log, {}, observer); }), HasSubstr("position 3: first_angle of nan rad"));
   MappingOptions paper;
   paper.run.method = Method::kPaper;
@@ -170,7 +170,7 @@ TEST(Plausibility, ReadingsOfAnyKindAreNoFault) {
                                std::numeric_limits<float>::max(),       std::numeric_limits<float>::denorm_min(), 0.0F};
   for (std::size_t i = 0; i < 60; ++i) log.scans[0].sweeps[0].ranges_m[3 * i] = odd[i % odd.size()];
   log.scans[1].sweeps[0].ranges_m.assign(181, std::numeric_limits<float>::quiet_NaN());
-  RunObserver observer;
+  MappingEvents observer;
   const MapResult result = map_log(log, {}, observer);
   ASSERT_EQ(result.scans.size(), 2U);
   EXPECT_EQ(result.scans[1].component, -1);

@@ -25,7 +25,7 @@ class ByteSink;
 
 /// Writes one JSON object a line as soon as there is something to tell, so that memory does not grow with the log. The
 /// trace has no times and no number of threads: the same map has the same trace. All functions throw OutputError.
-class TraceFile : public TraceSink {
+class TraceFile : public MappingEvents {
  public:
   /// The file is compressed when `path` ends in ".gz".
   TraceFile(const std::string& path, TracedRun run);
@@ -33,9 +33,9 @@ class TraceFile : public TraceSink {
 
   void on_shape(std::size_t scan_index, const std::vector<ShapePoint>& points) override;
   void on_alignment(const TracedAlignment& alignment) override;
-  void on_link(const TracedLink& edge) override;
-  void on_choice(const TracedChoice& choice) override;
-  void on_revision(const TracedRevision& revision) override;
+  void on_edge(const EdgeFound& edge) override;
+  void on_edge_chosen(const EdgeChosen& choice) override;
+  void on_edge_verified(const EdgeVerified& revision) override;
 
   /// Writes the result of each scan and moves the file to its place; without this call no file appears.
   void commit(const MapResult& result);

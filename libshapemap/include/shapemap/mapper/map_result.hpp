@@ -66,4 +66,7 @@ struct MapResult {
   std::string why_not_in_map(const ScanResult& scan) const;
 };
 
+/// Returns the index of the first of the components with most scans; -1 where there is none.
+int largest_component(const std::vector<Component>& components);
+
 }  // namespace shapemap

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <memory>
 #include <vector>
 
-#include "shapemap/core/observer.hpp"
 #include "shapemap/mapper/map.hpp"
 #include "shapemap/mapper/map_result.hpp"
 #include "shapemap/mapper/mapper_options.hpp"
-#include "shapemap/mapper/trace_sink.hpp"
+#include "shapemap/mapper/mapping_events.hpp"
+#include "shapemap/mapper/scan_update.hpp"
 #include "shapemap/matching/match_cache.hpp"
 #include "shapemap/scan/scan.hpp"
 
@@ -25,28 +24,6 @@ struct LiveOptions {
   bool in_background = false;
 };
 
-/// What a scan is to the map.
-enum class ScanRole {
-  kKeyframe,  ///< others are matched to it
-  kAttached,  ///< a keyframe shows the same
-  kNoShape,   ///< it has too few points that tell anything, and no pose
-};
-
-/// What is known of a scan as soon as it has come.
-struct ScanUpdate {
-  std::size_t scan = 0;  ///< its number, from 0 on in the order in which scans come
-  ScanRole role = ScanRole::kNoShape;
-  /// Where it is in the map of `version`, by way of the matches since. Without a component where nothing joins it to
-  /// that map; before the first map, component 0 is what matches join to the first scan with shape.
-  ScanPose pose;
-  MapVersion version = 0;
-
-  std::size_t reference = kNoReference;  ///< the keyframe that it was matched to; none for the first of a session
-  Pose2 reference_from_robot = kNoPose;  ///< by that match
-  double probability = 0.0;              ///< that the match is right, by these two scans
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, theta) of `reference_from_robot`
-};
-
 /// Makes a map of scans that are pushed into it one after the other, from their ranges alone.
 ///
 /// Each scan has a pose at once. Maps follow while it grows: whenever enough is new, loops are closed, and
@@ -56,12 +33,11 @@ struct ScanUpdate {
 /// Calls must come from one thread at a time, but for map() and corrections_since(), which may come from any.
 class Mapper {
  public:
-  /// Uses the robust method, whatever `options.run.method` is. `observer` hears of the stages of the work and is asked
-  /// whether to go on; with LiveOptions::in_background it hears only of what finish() does. `sink` sees what leads to
-  /// the map, in the background from another thread, though never two calls at a time. `cache` keeps matches. All three
-  /// may be null; the mapper keeps the pointers. Throws ConfigError for options out of their limits.
-  explicit Mapper(const MappingOptions& options, const LiveOptions& live = {}, RunObserver* observer = nullptr,
-                  TraceSink* sink = nullptr, MatchCache* cache = nullptr);
+  /// Uses the robust method, whatever `options.run.method` is. `events` hear what happens and are asked whether to go
+  /// on; `cache` keeps matches. Both may be null; the mapper keeps the pointers. Throws ConfigError for options out of
+  /// their limits.
+  explicit Mapper(const MappingOptions& options, const LiveOptions& live = {}, MappingEvents* events = nullptr,
+                  MatchCache* cache = nullptr);
   ~Mapper();
   Mapper(const Mapper&) = delete;
   Mapper& operator=(const Mapper&) = delete;
@@ -80,7 +56,7 @@ class Mapper {
   /// The scans that have another pose now than in the map of version `version`.
   Corrections corrections_since(MapVersion version) const;
 
-  /// The map of all scans. When the observer asks to stop, it is made with what was found by then.
+  /// The map of all scans. When the events ask to stop, it is made with what was found by then.
   MapResult finish();
 
  private:

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "shapemap/mapper/trace_sink.hpp"
+#include "shapemap/mapper/mapping_events.hpp"
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <stdexcept>
+#include <thread>
 
 #include "shapemap/mapper/map_log.hpp"
+#include "shapemap/mapper/mapper.hpp"
 #include "shapemap/matching/match_probability.hpp"
 #include "support/matchers.hpp"
+#include "support/ring_laps.hpp"
 #include "support/synthetic_world.hpp"
 
 namespace shapemap {
@@ -38,7 +42,7 @@ MappingOptions options_of(Method method) {
 }
 
 /// Keeps copies of what it is shown.
-struct Recorder : TraceSink {
+struct Recorder : MappingEvents {
   struct Edge {
     std::size_t reference, query, num_own;
     double insufficient_view;
@@ -54,25 +58,25 @@ struct Recorder : TraceSink {
     targets.push_back(shown.targets);
     queries.push_back(shown.query_index);
   }
-  void on_link(const TracedLink& l) override {
+  void on_edge(const EdgeFound& l) override {
     edges.push_back({l.reference_index, l.query_index, l.num_own, l.insufficient_view, l.candidates});
   }
-  void on_choice(const TracedChoice& choice) override { choices.push_back(choice); }
+  void on_edge_chosen(const EdgeChosen& choice) override { choices.push_back(choice); }
 
   std::vector<std::size_t> indices, num_points, queries;
   std::vector<PaperAlignment> alignments;
   std::vector<PaperTrace> steps;
   std::vector<std::vector<TracedTarget>> targets;
   std::vector<Edge> edges;
-  std::vector<TracedChoice> choices;
+  std::vector<EdgeChosen> choices;
 };
 
-MapResult mapped(const Log& log, Method method, TraceSink* sink) {
-  RunObserver nobody;
-  return map_log(log, options_of(method), nobody, sink);
+MapResult mapped(const Log& log, Method method, MappingEvents* sink) {
+  MappingEvents nobody;
+  return map_log(log, options_of(method), sink ? *sink : nobody);
 }
 
-TEST(TraceSink, LookingOnChangesNoBit) {
+TEST(MappingEvents, LookingOnChangesNoBit) {
   const Log log = walk_with_a_blind_scan();
   for (const Method method : {Method::kPaper, Method::kRobust}) {
     Recorder recorder;
@@ -92,7 +96,7 @@ TEST(TraceSink, LookingOnChangesNoBit) {
   }
 }
 
-TEST(TraceSink, SeesEachAlignmentOfThePapersMethodWithItsTargets) {
+TEST(MappingEvents, SeesEachAlignmentOfThePapersMethodWithItsTargets) {
   Recorder recorder;
   const MapResult result = mapped(walk_with_a_blind_scan(), Method::kPaper, &recorder);
   EXPECT_TRUE(recorder.edges.empty());
@@ -115,7 +119,7 @@ TEST(TraceSink, SeesEachAlignmentOfThePapersMethodWithItsTargets) {
   EXPECT_EQ(recorder.targets[1][1].num_points, recorder.num_points[1]);
 }
 
-TEST(TraceSink, SeesWhatTheRobustMethodChoosesFrom) {
+TEST(MappingEvents, SeesWhatTheRobustMethodChoosesFrom) {
   Recorder recorder;
   const MapResult result = mapped(walk_with_a_blind_scan(), Method::kRobust, &recorder);
   EXPECT_TRUE(recorder.alignments.empty());
@@ -125,7 +129,7 @@ TEST(TraceSink, SeesWhatTheRobustMethodChoosesFrom) {
   EXPECT_EQ(recorder.edges[2].query, 4U);
   for (std::size_t k = 0; k < recorder.edges.size(); ++k) {
     const Recorder::Edge& edge = recorder.edges[k];
-    const TracedChoice& choice = recorder.choices[k];
+    const EdgeChosen& choice = recorder.choices[k];
     EXPECT_EQ(choice.reference_index, edge.reference);
     EXPECT_EQ(choice.query_index, edge.query);
     EXPECT_GT(edge.num_own, 0U);
@@ -136,7 +140,7 @@ TEST(TraceSink, SeesWhatTheRobustMethodChoosesFrom) {
   }
 }
 
-TEST(TraceSink, SeesHowLittleNarrowScansSeeAndThatCountsInTheResult) {
+TEST(MappingEvents, SeesHowLittleNarrowScansSeeAndThatCountsInTheResult) {
   test::Scanner narrow;
   narrow.num_beams = 91;
   narrow.view_rad = 91 * kDegree;
@@ -147,18 +151,17 @@ TEST(TraceSink, SeesHowLittleNarrowScansSeeAndThatCountsInTheResult) {
   MappingOptions options = options_of(Method::kRobust);
   options.robust.edge_verification.doubt_below = 0.0;  // judged by the two scans
   Recorder recorder;
-  RunObserver nobody;
-  const MapResult result = map_log(log, options, nobody, &recorder);
+  const MapResult result = map_log(log, options, recorder);
   ASSERT_EQ(recorder.edges.size(), 1U);
   const Recorder::Edge& edge = recorder.edges[0];
   EXPECT_NEAR(edge.insufficient_view, 0.2, 0.05);
-  const TracedChoice& choice = recorder.choices.at(0);
+  const EdgeChosen& choice = recorder.choices.at(0);
   const double match = match_probability(edge.candidates.at(choice.candidate), choice.margin);
   EXPECT_EQ(result.scans[1].match.probability, odometry_probability(match, edge.insufficient_view));
 }
 
-TEST(TraceSink, WhatItThrowsEndsTheRun) {
-  struct Full : TraceSink {
+TEST(MappingEvents, WhatItThrowsEndsTheRun) {
+  struct Full : MappingEvents {
     void on_shape(std::size_t index, const std::vector<ShapePoint>& /*points*/) override {
       if (index == 2) throw std::runtime_error("full");
     }
@@ -168,6 +171,94 @@ TEST(TraceSink, WhatItThrowsEndsTheRun) {
     Full sink;
     EXPECT_THROW(mapped(log, method, &sink), std::runtime_error);
   }
+}
+
+/// Counts what the back end tells, and checks that no two calls come at a time.
+struct Counter : MappingEvents {
+  void on_stage(std::string_view) override {
+    entered([&] { caller = std::this_thread::get_id(); });
+  }
+  void on_shape(std::size_t, const std::vector<ShapePoint>&) override {
+    entered([&] { ++num_shapes; });
+  }
+  void on_scan(const ScanUpdate& scan) override {
+    entered([&] { scans.push_back(scan.scan); });
+  }
+  void on_edge(const EdgeFound& edge) override {
+    entered([&] { num_candidates += edge.candidates.size(); });
+  }
+  void on_loop(const LoopJudged& loop) override {
+    entered([&] {
+      ++(loop.is_accepted ? num_accepted : num_refused);
+      EXPECT_EQ(loop.is_accepted, loop.why_not.empty());
+      EXPECT_LT(loop.loop.a, loop.loop.b);
+    });
+  }
+  void on_culled(const KeyframesCulled& gone) override {
+    entered([&] { culled.insert(culled.end(), gone.scans.begin(), gone.scans.end()); });
+  }
+  void on_map(const Map& map) override {
+    entered([&] { versions.push_back(map.version); });
+  }
+  void on_edge_chosen(const EdgeChosen&) override {
+    entered([&] { ++num_chosen; });
+  }
+
+  template <class What>
+  void entered(const What& what) {
+    EXPECT_FALSE(is_in_call.exchange(true)) << "two calls at a time";
+    what();
+    is_in_call = false;
+  }
+
+  std::atomic<bool> is_in_call{false};
+  std::thread::id caller;
+  std::size_t num_shapes = 0, num_candidates = 0, num_accepted = 0, num_refused = 0, num_chosen = 0;
+  std::vector<std::size_t> scans, culled;
+  std::vector<MapVersion> versions;
+};
+
+TEST(MappingEvents, TellOfScansLoopsMapsAndCulledKeyframes) {
+  const test::Laps laps(3 * test::kRingLap);
+  MappingOptions options = test::quick_mapping();
+  options.robust.keyframes.settle_at = 64;
+  const std::size_t count = laps.log.scans.size();
+  for (const bool background : {false, true}) {
+    Counter counter;
+    Mapper mapper(options, {true, background}, &counter);
+    for (const Scan& scan : laps.log.scans) mapper.add_scan(scan);
+    const MapResult result = mapper.finish();
+    EXPECT_EQ(counter.num_shapes, count);
+    ASSERT_EQ(counter.scans.size(), count);
+    for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(counter.scans[i], i);
+    EXPECT_GT(counter.num_candidates, count);
+    EXPECT_GT(counter.num_accepted, 0U);
+    EXPECT_GT(counter.num_chosen, count / 2);
+    ASSERT_EQ(counter.versions.size(), mapper.map()->version);
+    for (std::size_t k = 0; k < counter.versions.size(); ++k) EXPECT_EQ(counter.versions[k], k + 1);
+    EXPECT_FALSE(counter.culled.empty());
+    for (const std::size_t scan : counter.culled) EXPECT_FALSE(result.scans[scan].is_keyframe) << scan;
+    EXPECT_EQ(counter.caller, std::this_thread::get_id());
+  }
+}
+
+TEST(MappingEvents, GoToAllListenersWhileAllWantToGoOn) {
+  struct Listener : MappingEvents {
+    void on_stage(std::string_view) override { ++num_stages; }
+    void on_scan(const ScanUpdate&) override { ++num_scans; }
+    bool keep_going() override { return num_scans < most; }
+    std::size_t num_stages = 0, num_scans = 0, most = 1000;
+  };
+  Listener one;
+  Listener other;
+  EventFanOut both({&one, &other});
+  const Log log = walk_with_a_blind_scan();
+  EXPECT_FALSE(map_log(log, options_of(Method::kRobust), both).interrupted);
+  EXPECT_EQ(one.num_scans, log.scans.size());
+  EXPECT_EQ(other.num_scans, log.scans.size());
+  EXPECT_GT(one.num_stages, 0U);
+  other.most = 0;
+  EXPECT_TRUE(map_log(log, options_of(Method::kRobust), both).interrupted);
 }
 
 }  // namespace
