@@ -19,7 +19,7 @@ constexpr const char* kExamples =
 /// Says whether matching two scans depends on the option.
 bool matters(const OptionEntry& entry) {
   const auto begins_with = [&](const char* text) { return entry.group.rfind(text, 0) == 0; };
-  if (entry.group == "Chain") return entry.name == "threads";
+  if (entry.group == "Run") return entry.name == "threads";
   return !begins_with("Paper's method") && entry.group != "Robust method: chain" && entry.group != "Map" &&
          entry.group != "Drawing";
 }
