@@ -55,9 +55,9 @@ std::string one_line(std::string text) {
 TableFlags::TableFlags(CLI::App& app, const OptionTable& table) {
   constexpr const char* kHidden = "";
   for (const OptionEntry& entry : table) {
-    flags_.push_back({&entry, add_flag(app, entry, entry.name)->group(entry.group)});
+    CLI::Option* const now = add_flag(app, entry, entry.name)->group(entry.group);
+    flags_.push_back({&entry, now});
     if (entry.old_name.empty()) continue;
-    CLI::Option* const now = flags_.back().option;
     flags_.push_back({&entry, add_flag(app, entry, entry.old_name)->group(kHidden)->excludes(now)});
   }
 }
