@@ -65,10 +65,11 @@ def read_sections(sections: Sequence[Section]) -> list[Section]:
             chosen.append(Section(title, [], [side_by_side(data, column)]))
     compared = of_kind(sections, "comparison")
     if len(compared):
-        told = compared["data"].str.startswith(WHOLE) & compared["score"].isin(READ_SCORES)
+        compared = compared[compared["data"].str.startswith(WHOLE) & compared["score"].isin(READ_SCORES)]
+    if len(compared):
         columns = ["A is", "B is", "score", "A", "B", "B - A", "95 % interval of B - A", "p"]
         text = "Means over all data sets, or over all logs; docs/evaluation.md says how they are compared."
-        chosen.append(Section("Comparisons", [text], [compared.loc[told, columns]]))
+        chosen.append(Section("Comparisons", [text], [compared[columns]]))
     return chosen
 
 
@@ -78,7 +79,9 @@ def write_long_tables(folder: Path, sections: Sequence[Section]) -> Section:
     lines = []
     for kind, (name, what) in LONG_TABLES.items():
         data = of_kind(sections, kind)
-        if len(data):
+        if not len(data):
+            (folder / name).unlink(missing_ok=True)  # of a former snapshot
+        else:
             write_whole(folder / name, data.to_csv(index=False, lineterminator="\n"))
             lines.append(f"- [{name}]({folder.name}/{name}): {what}")
     return Section("All numbers", ["\n".join(lines)])

@@ -43,6 +43,16 @@ def test_runs_that_failed_are_named() -> None:
     assert side_by_side(failed, "ATE").loc[0, "paper"] == "1.20 m (failed 1 of 3)"
 
 
+def test_files_of_a_former_snapshot_go_and_what_cannot_be_compared_is_not_headed(tmp_path: Path) -> None:
+    (tmp_path / "page").mkdir()
+    for name in ("costs.csv", "remains.md"):
+        (tmp_path / "page" / name).write_text("old", encoding="utf-8")
+    alone = Section("Is it better?", [], [COMPARED[:1]], level=3, kind="comparison", known=KNOWN)
+    write_snapshot(tmp_path / "page.md", [alone], [], [])
+    assert sorted(path.name for path in (tmp_path / "page").iterdir()) == ["comparisons.csv", "remains.md"]
+    assert "Comparisons" not in (tmp_path / "page.md").read_text(encoding="utf-8")
+
+
 def test_the_page_is_short_and_the_files_have_all_of_it(tmp_path: Path) -> None:
     tabled = [
         Section("What was run", ["Made by hand."], kind="about"),
