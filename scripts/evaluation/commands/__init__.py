@@ -37,6 +37,7 @@ COMMANDS = {
     },
     "figures": {
         "gallery": "the maps of many logs in one picture",
+        "method-figures": "a figure for each stage of the robust method",
         "paper-figures": "the figures of the paper, step by step",
     },
 }

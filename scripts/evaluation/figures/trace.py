@@ -6,7 +6,7 @@ from __future__ import annotations
 import gzip
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +44,8 @@ class ScanPosition:
 
 @dataclass(frozen=True)
 class Trace:
-    """`positions` and `results` by index; `alignments` and `links` by the index of their query."""
+    """`positions` and `results` by index; `alignments`, `links`, `choices` and `revisions` by the index of their
+    query."""
 
     path: Path
     run: dict[str, Any]
@@ -53,6 +54,8 @@ class Trace:
     links: dict[int, dict[str, Any]]
     results: dict[int, dict[str, Any]]
     largest_fragment: int
+    choices: dict[int, dict[str, Any]] = field(default_factory=dict)
+    revisions: dict[int, dict[str, Any]] = field(default_factory=dict)
 
     @property
     def method(self) -> str:
@@ -164,4 +167,6 @@ def read_trace(path: Path) -> Trace:
         links={record["query"]: record for record in found["link"]},
         results={record["index"]: record for record in found["result"]},
         largest_fragment=found["end"][0]["largest_fragment"],
+        choices={record["query"]: record for record in found["choice"]},
+        revisions={record["query"]: record for record in found["revision"]},
     )

@@ -9,34 +9,21 @@ import html
 import shutil
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
-
 from evaluation.common.files import write_whole
-from evaluation.common.tables import table
 from evaluation.logs.evaluation_log import EvaluationLog
 
 from . import pictures, tables
+from .sections import Section, as_markdown
+from .snapshot import write_snapshot
 
 STYLE = (
     "body{font:15px/1.5 sans-serif;max-width:1200px;margin:2em auto;padding:0 1em;color:#222}"
     "table{border-collapse:collapse;margin:1em 0;font-size:13px}td,th{border:1px solid #ccc;padding:2px 7px;"
     "text-align:left}th{background:#f0f0f0}img{max-width:100%}.failed{color:#b00000}code{background:#f4f4f4}"
 )
-
-
-@dataclass
-class Section:
-    """`pictures` with their captions; `level` 2 is a chapter."""
-
-    title: str
-    text: list[str] = field(default_factory=list)
-    tables: list[pd.DataFrame] = field(default_factory=list)
-    pictures: list[tuple[Path, str]] = field(default_factory=list)
-    level: int = 2
 
 
 def write_report(results: dict[str, Any], logs: dict[str, EvaluationLog], arguments: argparse.Namespace) -> None:
@@ -52,7 +39,7 @@ def write_report(results: dict[str, Any], logs: dict[str, EvaluationLog], argume
     write_whole(out / "report.html", as_html(title, [*tabled, *pictured]))
     write_whole(out / "report.md", as_markdown(title, [*tabled, *pictured], out))
     if arguments.snapshot:
-        write_snapshot(arguments.snapshot, results, tabled, pictured, arguments.snapshot_logs)
+        write_snapshot(arguments.snapshot, tabled, pictured, arguments.snapshot_logs)
 
 
 def table_sections(results: dict[str, Any]) -> list[Section]:
@@ -62,19 +49,19 @@ def table_sections(results: dict[str, Any]) -> list[Section]:
     sections = [about_section(results)]
     failed = tables.failure_table(results)
     if len(failed):
-        sections.append(Section("Failed runs", [f"{len(failed)} of {len(data)} runs failed."], [failed]))
+        sections.append(Section("Failed runs", [f"{len(failed)} of {len(data)} runs failed."], [failed], kind="about"))
     if len(judged):
-        sections.append(Section("Scores by data set", [tables.NOTES], [tables.summary_table(judged)]))
+        sections.append(Section("Scores by data set", [tables.NOTES], [tables.summary_table(judged)], kind="scores"))
     relations = tables.relations_table(results)
     if len(relations):
         text = "Relations between scans, made by hand: mean and standard deviation of the absolute errors, mean of the "
         text += "squares. The ceiling aligns the two scans of a relation, started at the relation; the rest is chains."
-        sections.append(Section("Relations", [text], [relations]))
+        sections.append(Section("Relations", [text], [relations], kind="relations"))
     sections += comparison_sections(results)
     if len(costs := tables.cost_table(data, results)):
-        sections.append(Section("Logs without reference: maps and timing only", [], [costs]))
+        sections.append(Section("Logs without reference: maps and timing only", [], [costs], kind="costs"))
     if len(judged) and judged["log"].nunique() > judged["group"].nunique():
-        sections.append(Section("Scores by log", [], [tables.summary_table(judged, "log")]))
+        sections.append(Section("Scores by log", [], [tables.summary_table(judged, "log")], kind="scores by log"))
     return sections
 
 
@@ -87,14 +74,15 @@ def about_section(results: dict[str, Any]) -> Section:
         f"({machine['cpu']})."
     ]
     text += [f"SKIPPED, missing: {skipped['name']}" for skipped in results["skipped"]]
-    return Section("What was run", text, [tables.data_table(results)])
+    return Section("What was run", text, [tables.data_table(results)], kind="about")
 
 
 def comparison_sections(results: dict[str, Any]) -> list[Section]:
     sections = [Section("Comparisons", [tables.PAIRED_NOTES])]
     for title, a, b in tables.questions(results["methods"]):
         text, compared = tables.comparison_table(results, a, b)
-        sections.append(Section(title, [text], [compared], level=3))
+        known = {"question": title, "A is": a, "B is": b}
+        sections.append(Section(title, [text], [compared], level=3, kind="comparison", known=known))
     return sections if len(sections) > 1 else []
 
 
@@ -144,19 +132,6 @@ def failure_sections(log: EvaluationLog, run: dict[str, Any], most: int, folder:
     return sections
 
 
-def as_markdown(title: str, sections: Sequence[Section], beside: Path) -> str:
-    parts = [f"# {title}"]
-    for section in sections:
-        parts += [f"{'#' * section.level} {section.title}", *section.text]
-        parts += [markdown_table(data) for data in section.tables if len(data)]
-        parts += [f"![{caption}]({path.relative_to(beside).as_posix()})" for path, caption in section.pictures]
-    return "\n\n".join(parts) + "\n"
-
-
-def markdown_table(data: pd.DataFrame) -> str:
-    return table(list(data.columns), [[str(cell).replace("|", "\\|") for cell in row] for row in data.values.tolist()])
-
-
 def as_html(title: str, sections: Sequence[Section]) -> str:
     parts = [f"<h1>{html.escape(title)}</h1>"]
     for section in sections:
@@ -178,25 +153,3 @@ def picture_html(path: Path, caption: str) -> str:
     return (
         f'<figure><img alt="{caption}" src="data:image/png;base64,{data}"><figcaption>{caption}</figcaption></figure>'
     )
-
-
-def write_snapshot(
-    path: Path, results: dict[str, Any], tabled: Sequence[Section], pictured: Sequence[Section], logs: Sequence[str]
-) -> None:
-    """The tables, and the pictures of the chosen logs (not of their failures) in pictures/ beside it."""
-    chosen = []
-    for section in pictured:
-        if section.title not in logs:
-            continue
-        copies = []
-        for source, caption in section.pictures:
-            copy = path.parent / "pictures" / f"results_{source.name}"
-            copy.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(source, copy)
-            copies.append((copy, caption))
-        chosen.append(Section(section.title, section.text, section.tables, copies, section.level))
-    missing = [name for name in logs if name not in {section.title for section in chosen}]
-    if missing:
-        chosen.append(Section("Not among the logs that were run", [", ".join(missing)]))
-    path.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(path, as_markdown("Results", [*tabled, *chosen], path.parent))

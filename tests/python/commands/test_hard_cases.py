@@ -27,7 +27,7 @@ from evaluation.simulation.write import tum_text
 
 CLI = Path(os.environ.get("SHAPEMAP_CLI", BIN / "shapemap-cli"))
 
-# Where the mapper does not do what the scene asks for, and why; docs/hard_cases.md says more.
+# Where the mapper does not do what the scene asks for, and why; docs/results/hard_scenes.md says more.
 OTHER = "a like piece of another wall is called ok"
 KNOWN_FAILURES = {
     ("crowd", 0): "people seen by one scan stand in the way of the other's beams, which speaks against the true pose",

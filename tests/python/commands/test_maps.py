@@ -127,6 +127,12 @@ def test_a_snapshot_has_tables_chosen_pictures_and_the_command(folder: Path) -> 
     assert "scripts/evaluate.py maps --datasets" in text
     assert "--snapshot-logs line,absent" in text
     assert "failures of" not in text
+    assert "| data | robust | ceiling |" in text, "one column for each method"
+    assert "[scores.csv](results/scores.csv)" in text
+    assert len(text.splitlines()) < 60, "the long tables are files"
+    scores = (folder / "docs/results/scores.csv").read_text(encoding="utf-8").splitlines()
+    assert scores[0].startswith("data,method,logs,right pairs (95 %),median error,coverage,ATE,")
+    assert [line.split(",")[:2] for line in scores[1:]] == [["line", "robust"], ["line", "ceiling"]]
     pictures = re.findall(r"\]\((\S+\.png)\)", text)
     assert "pictures/results_line_maps.png" not in pictures, "the made-up mapper draws none"
     assert pictures == ["pictures/results_line_trajectories.png", "pictures/results_line_errors.png"]
