@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "back_end_thread.hpp"
+#include "mapper_numbers.hpp"
 
 #include <utility>
 
 namespace shapemap {
 namespace {
-
-/// A recording at 40 scans a second waits for minutes before this many do.
-constexpr std::size_t kMostWaiting = 10000;
 
 BackEndContext observed_by(BackEndContext context, RunObserver& observer) {
   return {context.options, observer, context.sink, context.cache, std::move(context.publish)};
@@ -41,7 +39,7 @@ BackEndThread::~BackEndThread() {
 
 void BackEndThread::add(TrackedScan scan) {
   std::unique_lock<std::mutex> lock(mutex_);
-  changed_.wait(lock, [this] { return waiting_.size() < kMostWaiting || failure_; });
+  changed_.wait(lock, [this] { return waiting_.size() < kMapper.updates.most_waiting || failure_; });
   if (failure_) std::rethrow_exception(failure_);
   waiting_.push_back(std::move(scan));
   lock.unlock();

@@ -118,7 +118,7 @@ struct TwoPieces {
   std::vector<SubmapAlignment> ways(std::size_t piece_first = kF) const {
     Nodes all(joints.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
-    return SubmapAlignments(joints, pose, submap).ways(piece_first, all);
+    return SubmapAlignments(joints, pose, submap, 20.0).ways(piece_first, all);
   }
 
   std::mt19937 rng;
@@ -286,7 +286,7 @@ TEST(Holds, WhatIsNearEnoughToThePiece) {
   const auto holds = [&](const Pose2& off) {
     const SubmapCandidate joint{
         {a, b, inverse(submaps.pose[a]) * submaps.pose[b] * off, Eigen::Matrix3d::Identity(), 0.0}, 1.0, 0};
-    return SubmapAlignments(submaps.joints, submaps.pose, submaps.submap).holds(joint);
+    return SubmapAlignments(submaps.joints, submaps.pose, submaps.submap, 20.0).holds(joint);
   };
   EXPECT_TRUE(holds({}));
   EXPECT_TRUE(holds({0.0, 0.39, 0.0}));

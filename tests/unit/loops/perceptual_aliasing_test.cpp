@@ -26,7 +26,7 @@ struct Walk {
     return loop(a, b, inverse(map[a]) * map[b], log_odds);
   }
   std::vector<LoopCandidate> of(const std::vector<LoopCandidate>& candidates) const {
-    return without_aliases(candidates, edges, map);
+    return without_aliases(candidates, edges, map, 0.97);
   }
 
   std::vector<Pose2> map;
@@ -74,7 +74,7 @@ TEST(PerceptualAliasing, NeedsAMapOfTheChain) {
   Walk walk;
   walk.map.pop_back();
   EXPECT_THROW(walk.of({}), std::invalid_argument);
-  EXPECT_TRUE(without_aliases({}, {}, {}).empty());
+  EXPECT_TRUE(without_aliases({}, {}, {}, 0.97).empty());
 }
 
 }  // namespace
