@@ -74,6 +74,10 @@ std::optional<InfoArguments> parse_info_arguments(const std::vector<std::string>
 std::optional<ConvertArguments> parse_convert_arguments(const std::vector<std::string>& typed);
 std::optional<AlignArguments> parse_align_arguments(const std::vector<std::string>& typed);
 
+/// Of `numbers`, which takes no arguments. False when help or the version was asked for and printed. Throws ConfigError
+/// for wrong usage.
+bool parse_numbers_arguments(const std::vector<std::string>& typed);
+
 /// The options of `settings` that aligning pairs looks at. The table must not outlive `settings`.
 OptionTable align_option_table(MapSettings& settings);
 
