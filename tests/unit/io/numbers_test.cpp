@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
@@ -85,19 +86,18 @@ TEST(MethodNumbers, OfAllMembersOfAllTablesAreTold) {
 }
 
 TEST(MethodNumbers, AreWhatTheCodeReads) {
-  std::set<std::string> names;
+  std::map<std::string, MethodNumber> by_name;
   for (const MethodNumber& number : method_numbers()) {
     const std::string name = number.room + "." + number.group + "." + number.name;
-    EXPECT_TRUE(names.insert(name).second) << name;
+    EXPECT_TRUE(by_name.emplace(name, number).second) << name;
     EXPECT_FALSE(number.help.empty()) << name;
     EXPECT_FALSE(number.reason.empty()) << name;
-    if (name == "matching.score.agree") EXPECT_EQ(number.value, kMatching.score.agree);
-    if (name == "loops.clusters.same_rad") EXPECT_EQ(number.value, kLoops.clusters.same.rad);
-    if (name == "mapper.updates.most_waiting") EXPECT_TRUE(number.is_whole);
-    if (name == "mapper.tracking.dense") EXPECT_FALSE(number.is_whole);
   }
-  EXPECT_THAT(names, testing::IsSupersetOf({"matching.score.agree", "loops.clusters.same_rad",
-                                            "mapper.updates.most_waiting", "mapper.tracking.dense"}));
+  EXPECT_EQ(by_name.at("matching.score.agree").value, kMatching.score.agree);
+  EXPECT_EQ(by_name.at("loops.clusters.same_rad").value, kLoops.clusters.same.rad);
+  EXPECT_EQ(by_name.at("matching.line_noise.tangent").value, LineNoise().tangent);
+  EXPECT_TRUE(by_name.at("mapper.updates.most_waiting").is_whole);
+  EXPECT_FALSE(by_name.at("mapper.tracking.dense").is_whole);
 }
 
 TEST(MethodNumbers, ComeBackFromJsonToTheLastBit) {
