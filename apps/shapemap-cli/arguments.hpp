@@ -74,6 +74,10 @@ std::optional<InfoArguments> parse_info_arguments(const std::vector<std::string>
 std::optional<ConvertArguments> parse_convert_arguments(const std::vector<std::string>& typed);
 std::optional<AlignArguments> parse_align_arguments(const std::vector<std::string>& typed);
 
+/// Parses the arguments of `numbers`, which takes none. Returns false when help or the version was asked for and
+/// printed. Throws ConfigError for wrong usage.
+bool parse_numbers_arguments(const std::vector<std::string>& typed);
+
 /// Returns the options of `settings` that matching pairs depends on. The table must not outlive `settings`.
 OptionTable align_option_table(MapSettings& settings);
 

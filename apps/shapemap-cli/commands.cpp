@@ -15,6 +15,9 @@ int run_command_line(const std::vector<std::string>& typed) {
     const auto arguments = parse_convert_arguments({typed.begin() + 1, typed.end()});
     return arguments ? run_convert(*arguments) : kExitOk;
   }
+  if (command == "numbers") {
+    return parse_numbers_arguments({typed.begin() + 1, typed.end()}) ? run_numbers() : kExitOk;
+  }
   if (command == "align") {
     const auto arguments = parse_align_arguments({typed.begin() + 1, typed.end()});
     return arguments ? run_align(*arguments) : kExitOk;

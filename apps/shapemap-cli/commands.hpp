@@ -10,6 +10,7 @@ int run_map(const MapArguments& arguments);
 int run_info(const InfoArguments& arguments);
 int run_convert(const ConvertArguments& arguments);
 int run_align(const AlignArguments& arguments);
+int run_numbers();
 
 /// Runs the command that `typed` (without the program's name) asks for.
 int run_command_line(const std::vector<std::string>& typed);

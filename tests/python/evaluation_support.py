@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
+import json
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
 from evaluation.logs.datasets import LogSpec
 from evaluation.logs.evaluation_log import EvaluationLog, load
+from evaluation.mapping.numbers import Numbers, parse_numbers
 from evaluation.maps.methods import Programs, parse_method
 from evaluation.maps.runs import Job
 
@@ -91,10 +94,56 @@ def straight(num: int, step_m: float = 1.0) -> np.ndarray:
     return np.array([[k * step_m, 0.0, 0.0] for k in range(num)])
 
 
-# Writes a report: of each log a fragment whose position k is at (k, 0). `change` may alter it, and knows the words that
-# were passed on.
+# What a made-up mapper answers to `numbers`: not what the real one has in use.
+NUMBERS: Mapping[str, Mapping[str, Mapping[str, float]]] = {
+    "matching": {
+        "score": {
+            **{"agree": 7.0, "cross_agree": 1.5, "crossed": -3.0, "residual_per_m": -40.0},
+            **{"agree_offset": 0.05, "cross_agree_offset": 0.06, "crossed_offset": 0.03, "unclear_share": 0.5},
+        },
+        "match_probability": {
+            **{"constant": -0.5, "per_margin": 0.7, "per_log_margin": 0.2, "per_score": 0.5, "per_log_agree": 1.0},
+            **{"agree_offset": 0.04, "least_margin": 0.1, "full_margin": 15.0},
+        },
+        "odometry_probability": {"constant": 2.5, "per_log_odds": 0.6, "per_insufficient_view": -10.0},
+    },
+    "graph": {
+        "steps": {"usual_slip_m": 0.5},
+        "same_place": {"near_m": 0.1, "heading_rad": 0.17, "deviations": 3.0},
+        "edge_support": {"little": 1.5},
+    },
+    "inference": {
+        "agreement": {"same_candidate_m": 0.4, "same_candidate_rad": 0.14},
+        "verification_weights": {
+            **{"per_score": 0.7, "by_others": 3.0, "of_map": 1.0, "none_of_them": -5.0, "least_score": -12.0},
+            **{"none_per_insufficient_view": 20.0, "per_log_deviation": -0.4, "by_parallel": 0.6},
+        },
+    },
+}
+
+
+def numbers_text() -> str:
+    """NUMBERS as `shapemap-cli numbers` prints them."""
+    entries = [
+        {"room": room, "group": group, "title": group, "name": name, "value": value, "help": "x", "fitted_to": "y"}
+        for room, groups in NUMBERS.items()
+        for group, values in groups.items()
+        for name, value in values.items()
+    ]
+    return json.dumps(entries)
+
+
+def numbers() -> Numbers:
+    return parse_numbers(numbers_text())
+
+
+# Tells NUMBERS, or writes a report: of each log a fragment whose position k is at (k, 0). `change` may alter it, and
+# knows the words that were passed on.
 REPORTER = f"""import json, math, sys
 words = sys.argv[1:]
+if words == ['numbers']:
+    print({json.dumps(numbers_text())})
+    sys.exit()
 logs, passed_on = words[:words.index('--out')], words[words.index('--force') + 1:]
 positions, fragments = [], []
 for log, path in enumerate(logs):

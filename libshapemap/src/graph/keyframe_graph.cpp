@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "keyframe_graph.hpp"
+#include "graph_numbers.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -12,8 +13,9 @@ std::size_t num_choices(const OdometryEdge& edge) { return std::max<std::size_t>
 
 /// Both what the scans tell and that the sensor cannot jump: along a bare corridor, only that.
 Eigen::Matrix3d with_usual_motion(const Eigen::Matrix3d& covariance, bool is_expected) {
-  const double usual_m = is_expected ? kUsualSurprise_m : kUsualSlip_m;
-  const Eigen::Vector3d usual(usual_m, usual_m, is_expected ? kUsualSurprise_rad : kUsualSlip_rad);
+  const StepNumbers& steps = kGraph.steps;
+  const double usual_m = is_expected ? kUsualSurprise_m : steps.usual_slip_m;
+  const Eigen::Vector3d usual(usual_m, usual_m, is_expected ? kUsualSurprise_rad : steps.usual_slip_rad);
   const Eigen::Matrix3d motion = usual.cwiseAbs2().asDiagonal();
   const Eigen::Matrix3d both = motion * (motion + covariance).inverse() * covariance;
   return 0.5 * (both + both.transpose());
@@ -68,13 +70,11 @@ double stated_probability(const OdometryEdge& edge) {
 }
 
 MotionPrior motion_prior(const KeyframeGraph& graph) {
-  constexpr double kCertain = 0.98;
-  constexpr double kHeld_m = 0.2;
   std::vector<Pose2> motions;
   for (const OdometryEdge& edge : graph.edges) {
-    if (edge.culled_covariance || stated_probability(edge) < kCertain) continue;
+    if (edge.culled_covariance || stated_probability(edge) < kGraph.steps.certain) continue;
     const MatchCandidate& chosen = edge.candidates[edge.choice.candidate];
-    if (worst_deviation_m(pose_covariance(chosen.fit)) < kHeld_m) motions.push_back(chosen.ref_from_query);
+    if (worst_deviation_m(pose_covariance(chosen.fit)) < kGraph.steps.held_m) motions.push_back(chosen.ref_from_query);
   }
   return MotionPrior(motions);
 }

@@ -15,10 +15,6 @@
 
 namespace shapemap {
 
-/// Where nothing is expected, a step is what the scans say, give or take this much.
-inline constexpr double kUsualSlip_m = 0.5;
-inline constexpr double kUsualSlip_rad = 180 * kDegree;
-
 /// A scan that others are aligned to.
 struct Keyframe {
   std::size_t scan_index = 0;

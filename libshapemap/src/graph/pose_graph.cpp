@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/graph/pose_graph.hpp"
+#include "graph_numbers.hpp"
 
 #include <ceres/ceres.h>
 
@@ -78,7 +79,7 @@ ceres::Solver::Options solver_options(int max_iterations) {
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   options.max_num_iterations = max_iterations;
-  options.function_tolerance = 1e-5;
+  options.function_tolerance = kGraph.solver.function_tolerance;
   options.logging_type = ceres::SILENT;
   return options;
 }
@@ -135,18 +136,18 @@ double squared_error(const PoseConstraint& constraint, const std::vector<Pose2>&
 }
 
 double deviations_off(const PoseConstraint& one, const Pose2& other) {
-  constexpr double kNear_m = 0.1;
-  constexpr double kHeading_rad = 10 * kDegree;
-  if (angle_between(one.a_from_b.theta_rad, other.theta_rad) > kHeading_rad) {
+  const SamePlaceNumbers& same = kGraph.same_place;
+  if (angle_between(one.a_from_b.theta_rad, other.theta_rad) > same.heading_rad) {
     return std::numeric_limits<double>::infinity();
   }
   const Point2 off_m = other.translation() - one.a_from_b.translation();
-  const Eigen::Matrix2d spread = one.covariance.topLeftCorner<2, 2>() + kNear_m * kNear_m * Eigen::Matrix2d::Identity();
+  const Eigen::Matrix2d spread =
+      one.covariance.topLeftCorner<2, 2>() + same.near_m * same.near_m * Eigen::Matrix2d::Identity();
   return std::sqrt(off_m.dot(spread.ldlt().solve(off_m)));
 }
 
 bool is_same_place(const PoseConstraint& one, const Pose2& other) {
-  return deviations_off(one, other) < kSameDeviations;
+  return deviations_off(one, other) < kGraph.same_place.deviations;
 }
 
 }  // namespace shapemap

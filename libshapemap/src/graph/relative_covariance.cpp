@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/graph/relative_covariance.hpp"
+#include "graph_numbers.hpp"
 
 #include <functional>
 #include <limits>
@@ -13,11 +14,9 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-/// What a radian of uncertainty costs, compared to a metre.
-constexpr double kLever_m = 5.0;
-
 double length_of(const Eigen::Matrix3d& covariance) {
-  return covariance(0, 0) + covariance(1, 1) + kLever_m * kLever_m * covariance(2, 2);
+  const double lever_m = kGraph.solver.lever_m;
+  return covariance(0, 0) + covariance(1, 1) + lever_m * lever_m * covariance(2, 2);
 }
 
 /// What an error of a constraint does to a point beyond it, in the frame of the map: it shifts all that is beyond, and

@@ -14,7 +14,7 @@ std::vector<std::size_t> starts_of_visits(const std::vector<PlacedScan>& placed)
   for (std::size_t i = 0; i < placed.size(); ++i) {
     if (!starts.empty()) {
       const Pose2 step = inverse(placed[starts.back()].map_from_robot) * placed[i].map_from_robot;
-      if (is_within(step, kVisitStep_m, kVisitTurn_rad)) continue;
+      if (is_within(step, {kVisitStep_m, kVisitTurn_rad})) continue;
     }
     starts.push_back(i);
   }

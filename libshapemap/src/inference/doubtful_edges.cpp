@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "graph/keyframe_match_cache.hpp"
+#include "inference_numbers.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/inference/edge_verification.hpp"
 #include "shapemap/inference/map_refinement.hpp"
@@ -15,13 +16,10 @@
 namespace shapemap {
 namespace {
 
-constexpr int kMoreEffort = 4;
-
-/// Some places look alike: a loop that is weaker than this does not vouch for what it joins.
-constexpr double kSureLoop = 18.0;
-
-/// Of a closed loop.
-const Eigen::Matrix3d kLoopCovariance = Eigen::Vector3d(0.01, 0.01, 0.0012).asDiagonal();
+Eigen::Matrix3d loop_covariance() {
+  const VerificationNumbers& numbers = kInference.verification;
+  return Eigen::Vector3d(numbers.loop_variance_m2, numbers.loop_variance_m2, numbers.loop_variance_rad2).asDiagonal();
+}
 
 class DoubtfulEdges {
  public:
@@ -133,7 +131,7 @@ class DoubtfulEdges {
   }
 
   bool is_sure(const ClosedLoop& loop) const {
-    return loop.strength >= kSureLoop || !looks_all_round(*views_[keyframe_of(loop.a)]) ||
+    return loop.strength >= kInference.search.joining_strength || !looks_all_round(*views_[keyframe_of(loop.a)]) ||
            !looks_all_round(*views_[keyframe_of(loop.b)]);
   }
 
@@ -149,7 +147,7 @@ class DoubtfulEdges {
     std::vector<PoseConstraint> constraints;
     for (const ClosedLoop& loop : map_.loops) {
       if (!which(loop)) continue;
-      constraints.push_back({keyframe_of(loop.a), keyframe_of(loop.b), loop.a_from_b, kLoopCovariance, 0.0});
+      constraints.push_back({keyframe_of(loop.a), keyframe_of(loop.b), loop.a_from_b, loop_covariance(), 0.0});
     }
     return constraints;
   }
@@ -159,8 +157,8 @@ class DoubtfulEdges {
     const auto is_contradicted = [&](const ClosedLoop& loop) {
       const std::size_t a = keyframe_of(loop.a);
       const std::size_t b = keyframe_of(loop.b);
-      const Pose2 off = inverse(loop.a_from_b) * (inverse(poses_[a]) * poses_[b]);
-      return submap_[a] != submap_[b] || !is_within(off, kContradicts_m, kContradicts_rad);
+      return submap_[a] != submap_[b] ||
+             !agrees(loop.a_from_b, inverse(poses_[a]) * poses_[b], kInference.agreement.contradicts);
     };
     const auto end = std::remove_if(map_.loops.begin(), map_.loops.end(), is_contradicted);
     changed_ = changed_ || end != map_.loops.end();
@@ -230,10 +228,10 @@ class DoubtfulEdges {
   /// With much more effort than a chain can have for each link.
   void search_again(std::size_t i) {
     MatchSearchOptions search = options_.matcher.search;
-    search.voting.peaks *= kMoreEffort;
-    search.candidates.rotation_peaks *= kMoreEffort;
-    search.candidates.refined *= kMoreEffort;
-    search.candidates.kept *= kMoreEffort;
+    for (int* effort : {&search.voting.peaks, &search.candidates.rotation_peaks, &search.candidates.refined,
+                        &search.candidates.kept}) {
+      *effort *= kInference.verification.more_effort;
+    }
     for (const MatchCandidate& pose : find_candidates(*views_[i], *views_[i + 1], search)) add(i, pose);
   }
 
@@ -254,7 +252,7 @@ class DoubtfulEdges {
     map_.component = connected_components(views_.size(), joined);
     for (std::size_t n = 0; n < views_.size(); ++n) {
       if (map_.component[n] > 0)
-        map_.map_from_keyframe[n].x_m += kComponentsApart_m * static_cast<double>(map_.component[n]);
+        map_.map_from_keyframe[n].x_m += kInference.search.components_apart_m * static_cast<double>(map_.component[n]);
     }
     const std::vector<bool> lone = bridge_edges(views_.size(), joined);
     std::size_t next = 0;

@@ -1,24 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "edge_moves.hpp"
+#include "inference_numbers.hpp"
 
 #include <algorithm>
 #include <utility>
 
 namespace shapemap {
-namespace {
-
-constexpr double kStrong = 10.0;
-constexpr double kVeryDoubtful = 0.65;
-
-constexpr int kRoundsOfRepair = 4;
-constexpr std::size_t kDoubtfulPerLoop = 4;
-
-/// A change is not pursued when the map is so much worse before loops follow.
-constexpr double kHopelessEdge = 30.0;
-constexpr double kHopelessLoop = 200.0;
-
-}  // namespace
-
 /// Moves what the chain has after link `i`; loops that then are contradicted are given up.
 void EdgeMoves::swing(MapHypothesis& map, std::size_t i, const Pose2& move) const {
   std::size_t n = i + 1;
@@ -27,7 +14,7 @@ void EdgeMoves::swing(MapHypothesis& map, std::size_t i, const Pose2& move) cons
     ++n;
   } while (n < problem_.num_nodes() && map.edge_choice[n - 1] != kCut);
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
-    if (map.accepted[k] && !is_within(problem_.off(map, k), kContradicts_m, kContradicts_rad)) map.accepted[k] = 0;
+    if (map.accepted[k] && !is_within(problem_.off(map, k), kInference.agreement.contradicts)) map.accepted[k] = 0;
   }
 }
 
@@ -58,8 +45,9 @@ bool EdgeMoves::try_candidates(MapHypothesis& best, std::size_t i) {
     trial.edge_choice[i] = choice;
     const Pose2& a_from_b = edges_[i].candidates[static_cast<std::size_t>(choice)].a_from_b;
     swing(trial, i, trial.map_from_node[i] * a_from_b * inverse(trial.map_from_node[i + 1]));
-    const bool was_changed = best.edge_choice[i] != 0;
-    if (better_when_closed(trial, best, was_changed ? kHopelessLoop : kHopelessEdge)) return true;
+    const SearchNumbers& numbers = kInference.search;
+    const double hopeless = best.edge_choice[i] != 0 ? numbers.hopeless_loop : numbers.hopeless_edge;
+    if (better_when_closed(trial, best, hopeless)) return true;
   }
   return false;
 }
@@ -69,14 +57,14 @@ bool EdgeMoves::try_cutting_for(MapHypothesis& best, std::size_t k) {
   const PoseConstraint& loop = problem_.best_member(k);
   const std::vector<std::size_t> submap = submaps_of(problem_, best);
   if (submap[loop.a] != submap[loop.b]) return false;
-  const std::vector<std::size_t> doubtful = doubtful_edges(loop.a, loop.b, kDoubtfulPerLoop);
+  const std::vector<std::size_t> doubtful = doubtful_edges(loop.a, loop.b, kInference.search.doubtful_per_loop);
   for (const std::size_t i : doubtful) {
     if (best.edge_choice[i] == kCut || !observer_.keep_going() || !is_new(i, kCut, k)) continue;
     MapHypothesis trial = best;
     trial.edge_choice[i] = kCut;
     swing(trial, i, trial.map_from_node[loop.a] * loop.a_from_b * inverse(trial.map_from_node[loop.b]));
     trial.accepted[k] = 1;
-    if (better_when_closed(trial, best, kHopelessLoop)) return true;
+    if (better_when_closed(trial, best, kInference.search.hopeless_loop)) return true;
   }
   return false;
 }
@@ -103,7 +91,7 @@ std::vector<std::size_t> EdgeMoves::changed_edges(const MapHypothesis& map) cons
 }
 
 void EdgeMoves::repair(MapHypothesis& best) {
-  for (const double doubt_below : {kVeryDoubtful * options_.doubt_below, options_.doubt_below}) {
+  for (const double doubt_below : {kInference.search.very_doubtful * options_.doubt_below, options_.doubt_below}) {
     doubt_below_ = doubt_below;
     repair_doubtful(best);
   }
@@ -111,11 +99,11 @@ void EdgeMoves::repair(MapHypothesis& best) {
 
 void EdgeMoves::repair_doubtful(MapHypothesis& best) {
   bool better = true;
-  for (int round = 0; better && round < kRoundsOfRepair; ++round) {
+  for (int round = 0; better && round < kInference.search.repair_rounds; ++round) {
     better = false;
     int left = options_.repairs;
     for (std::size_t k = 0; k < clusters_.size() && left > 0; ++k) {
-      if (best.accepted[k] || clusters_[k].strength < kStrong) continue;
+      if (best.accepted[k] || clusters_[k].strength < kInference.search.strong_loop) continue;
       --left;
       better = try_cutting_for(best, k) || better;
     }

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <optional>
 
+#include "graph/graph_numbers.hpp"
+#include "inference_numbers.hpp"
 #include "shapemap/core/parallel_for.hpp"
 #include "shapemap/graph/pose_graph.hpp"
 #include "shapemap/inference/map_score.hpp"
@@ -16,46 +18,27 @@
 namespace shapemap {
 namespace {
 
-/// Scans farther apart see nothing in common, and scans farther along the chain lie less exactly.
-constexpr double kWithin_m = 8.0;
-constexpr std::size_t kWindow = 16;
-
-/// Poses are as exact as a chain makes them.
-constexpr double kSlack = 1.3;
-
-/// Candidates nearer than this are the same.
-constexpr double kSame_m = 0.40;
-constexpr double kSame_rad = 8 * kDegree;
-
-/// What a candidate is worth, as logarithm of odds: a multinomial logit, fitted to doubtful links of thinned real logs
-/// and of simulated arenas by scripts/evaluate.py fit-edges.
-constexpr double kPerScore = 0.63;
-constexpr double kLeastScore = -12.0;  ///< however badly two scans go together by themselves, others may know better
-constexpr double kByOthers = 2.9;
-constexpr double kOfMap = 1.2;     ///< the whole map was asked already
-constexpr double kPerLoose = 0.5;  ///< a place that the two scans hold in no direction stands for many
-constexpr double kByParallel = 0.5;
-constexpr double kNoneOfThem = -5.7;
-constexpr double kPerShortfall = 25.0;  ///< the less two scans see, the likelier; fitted to hard scenes
-
 /// By its two scans, and whether the map has it.
 double worth_by_itself(const DoubtfulEdge& doubt, std::size_t k) {
   const DoubtfulEdge::Candidate& candidate = doubt.candidates[k];
-  return kPerScore * std::max(kLeastScore, candidate.score) - kPerLoose * std::log1p(candidate.best_deviation_m) +
-         (k == 0 ? kOfMap : 0.0);
+  const VerificationWeights& weights = kInference.verification_weights;
+  return weights.per_score * std::max(weights.least_score, candidate.score) +
+         weights.per_log_deviation * std::log1p(candidate.best_deviation_m) + (k == 0 ? weights.of_map : 0.0);
 }
 
-double worth_of_none(const DoubtfulEdge& doubt) { return kNoneOfThem + kPerShortfall * doubt.insufficient_view; }
-
-bool is_same(const Pose2& a, const Pose2& b) {
-  return (a.translation() - b.translation()).norm() < kSame_m && angle_between(a.theta_rad, b.theta_rad) < kSame_rad;
+double worth_of_none(const DoubtfulEdge& doubt) {
+  const VerificationWeights& weights = kInference.verification_weights;
+  return weights.none_of_them + weights.none_per_insufficient_view * doubt.insufficient_view;
 }
+
+bool is_same(const Pose2& a, const Pose2& b) { return agrees(a, b, kInference.agreement.same_candidate); }
 
 /// How right it is to be at the candidate `one` when `other` is true: a place is right or not, but along a corridor it
 /// slides, and is the less right the farther.
 double share_right(const DoubtfulEdge::Candidate& one, const Pose2& other) {
   if (is_same(one.a_from_b, other)) return 1.0;
-  return std::max(0.0, 1.0 - deviations_off({0, 0, one.a_from_b, one.covariance, 0.0}, other) / kSameDeviations);
+  const double deviations = deviations_off({0, 0, one.a_from_b, one.covariance, 0.0}, other);
+  return std::max(0.0, 1.0 - deviations / kGraph.same_place.deviations);
 }
 
 /// The best candidate by their `worths`, against all others, and none of them. Where nothing holds it along a corridor,
@@ -123,9 +106,11 @@ class Revision {
     parallel_for(balances.size(), threads_,
                  [&](std::size_t k) { balances[k] = support_by_others(doubt.edge, doubt.candidates[k].a_from_b); });
     std::vector<double> parallel_support = said_by_parallel(d);
+    const VerificationWeights& weights = kInference.verification_weights;
     std::vector<double> worths;
     for (std::size_t k = 0; k < balances.size(); ++k) {
-      worths.push_back(worth_by_itself(doubt, k) + kByOthers * balances[k].value() + kByParallel * parallel_support[k]);
+      worths.push_back(worth_by_itself(doubt, k) + weights.by_others * balances[k].value() +
+                       weights.by_parallel * parallel_support[k]);
     }
     VerifiedEdge verdict = verdict_by(worths, doubt);
     verdict.support_by_others = std::move(balances);
@@ -138,17 +123,18 @@ class Revision {
     const std::vector<Pose2>& poses = submaps_.map_from_node();
     const std::vector<std::size_t>& submap = submaps_.submap_of_node();
     const Pose2 move = submaps_.moved_by(edge, a_from_b);
-    const std::size_t first = edge + 1 - std::min(kWindow, edge + 1);
-    const std::size_t last = std::min(poses.size(), edge + 1 + kWindow);
+    const auto [within_m, window] = std::pair(kInference.verification.within_m, kInference.verification.window);
+    const std::size_t first = edge + 1 - std::min(window, edge + 1);
+    const std::size_t last = std::min(poses.size(), edge + 1 + window);
     EdgeSupport balance;
     for (std::size_t a = first; a < last; ++a) {
       if (submap[a] != submap[edge]) continue;
       for (std::size_t b = first; b < last; ++b) {
         if (submap[b] != submap[edge + 1] || (a == edge && b == edge + 1)) continue;
         const Pose2 near_from_far = inverse(poses[a]) * (move * poses[b]);
-        if (near_from_far.translation().norm() > kWithin_m) continue;
-        balance.add(
-            MapScore::of_pair(shapemap::visibility(*views_[a], *views_[b], near_from_far, visibility_, kSlack)));
+        if (near_from_far.translation().norm() > within_m) continue;
+        balance.add(MapScore::of_pair(shapemap::visibility(*views_[a], *views_[b], near_from_far, visibility_,
+                                                           kInference.agreement.odometry_slack)));
       }
     }
     return balance;
@@ -183,7 +169,7 @@ class Revision {
 
   bool are_near(std::size_t d, std::size_t e) const {
     const auto [before, after] = std::minmax(doubtful_[d].edge, doubtful_[e].edge);
-    return after - before <= kWindow;
+    return after - before <= kInference.verification.window;
   }
 
   /// With the parallel links that say the same; those that say otherwise are no more probable than that it is wrong.
@@ -213,12 +199,13 @@ class Revision {
     double nearest_m = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < doubt.candidates.size(); ++k) {
       const Pose2& pose = doubt.candidates[k].a_from_b;
-      const Pose2 off = inverse(pose) * place;
-      if (!(is_near ? is_same(place, pose) : is_within(off, kContradicts_m, kContradicts_rad))) continue;
+      const AgreementNumbers& numbers = kInference.agreement;
+      if (!agrees(pose, place, is_near ? numbers.same_candidate : numbers.contradicts)) continue;
       if (k == 0) return k;
-      if (off.translation().norm() >= nearest_m) continue;
+      const double off_m = (inverse(pose) * place).translation().norm();
+      if (off_m >= nearest_m) continue;
       nearest = k;
-      nearest_m = off.translation().norm();
+      nearest_m = off_m;
     }
     return nearest;
   }

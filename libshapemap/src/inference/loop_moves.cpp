@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "loop_moves.hpp"
+#include "inference_numbers.hpp"
 
 #include <algorithm>
 
 namespace shapemap {
 namespace {
-
-constexpr int kRoundsOfClosing = 3;
-
-/// What joins two pieces is all that tells of where they are to each other. It must be this strong, come from so many
-/// nodes of each, and be so many times as strong as the next that would join them otherwise: places look alike.
-constexpr double kJoiningStrength = 18.0;
-constexpr std::size_t kJoiningNodes = 3;
-constexpr double kJoiningLead = 2.0;
 
 /// How the piece of the later node moves to where a loop wants it.
 Pose2 join(const MapHypothesis& map, const PoseConstraint& loop) {
@@ -26,8 +19,8 @@ bool LoopMoves::close_agreeing(MapHypothesis& map) {
   MapHypothesis trial = map;
   bool any = false;
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
-    if (trial.accepted[k] || clusters_[k].strength < kLeastStrength) continue;
-    if (!is_within(problem_.off(trial, k), kAgrees_m, kAgrees_rad)) continue;
+    if (trial.accepted[k] || clusters_[k].strength < kInference.objective.least_strength) continue;
+    if (!is_within(problem_.off(trial, k), kInference.agreement.agrees)) continue;
     trial.accepted[k] = 1;
     any = true;
   }
@@ -42,16 +35,18 @@ bool LoopMoves::close_agreeing(MapHypothesis& map) {
 /// Whether loop `k` may decide where two pieces are to each other.
 bool LoopMoves::can_join(const MapHypothesis& map, const std::vector<std::size_t>& submap, std::size_t k) const {
   const LoopCluster& cluster = clusters_[k];
-  if (cluster.strength < kJoiningStrength || std::min(cluster.num_a, cluster.num_b) < kJoiningNodes) return false;
+  const SearchNumbers& numbers = kInference.search;
+  if (cluster.strength < numbers.joining_strength) return false;
+  if (std::min(cluster.num_a, cluster.num_b) < numbers.joining_nodes) return false;
   const PoseConstraint& loop = problem_.best_member(k);
   const Pose2 move = join(map, loop);
   for (std::size_t other = 0; other < clusters_.size(); ++other) {
-    if (clusters_[other].strength * kJoiningLead < cluster.strength) continue;
+    if (clusters_[other].strength * numbers.joining_lead < cluster.strength) continue;
     const PoseConstraint& rival = problem_.best_member(other);
     const bool same_submaps = submap[rival.a] == submap[loop.a] && submap[rival.b] == submap[loop.b];
     if (!same_submaps) continue;
     const Pose2 predicted = inverse(map.map_from_node[rival.a]) * move * map.map_from_node[rival.b];
-    if (!is_within(inverse(rival.a_from_b) * predicted, kContradicts_m, kContradicts_rad)) return false;
+    if (!agrees(rival.a_from_b, predicted, kInference.agreement.contradicts)) return false;
   }
   return true;
 }
@@ -84,13 +79,13 @@ bool LoopMoves::try_loop(MapHypothesis& map, std::size_t k) {
 
 void LoopMoves::close(MapHypothesis& map) {
   bool again = true;
-  for (int round = 0; again && round < kRoundsOfClosing; ++round) {
+  for (int round = 0; again && round < kInference.search.closing_rounds; ++round) {
     again = false;
     close_all_agreeing(map);
     for (std::size_t k = 0; k < clusters_.size() && observer_.keep_going(); ++k) {
-      if (map.accepted[k] || clusters_[k].strength < kLeastStrength) continue;
+      if (map.accepted[k] || clusters_[k].strength < kInference.objective.least_strength) continue;
       const Pose2 off = problem_.off(map, k);
-      if (is_within(inverse(map.refused_off[k]) * off, kAgrees_m, kAgrees_rad)) continue;
+      if (agrees(map.refused_off[k], off, kInference.agreement.agrees)) continue;
       if (try_loop(map, k)) {
         again = true;
         close_all_agreeing(map);

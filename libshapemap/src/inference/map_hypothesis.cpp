@@ -5,33 +5,19 @@
 #include <cmath>
 #include <set>
 
+#include "inference_numbers.hpp"
+#include "loops/loops_numbers.hpp"
 #include "shapemap/matching/match_probability.hpp"
 
 namespace shapemap {
 namespace {
 
-/// More members of a cluster hardly hold it better.
-constexpr std::size_t kMembersUsed = 8;
-constexpr double kLoopLoss = 2.0;
-
-/// The chain's probabilities allow for scans of different places, which neighbours are not.
-constexpr double kPriorOfEdges = 2.0;
-
-/// The chain took its neighbours into account as well.
-constexpr double kAgainstChain = 3.0;
-
-/// Steps that are so many times longer than usual are all alike: pieces that nothing joins lie far apart.
-constexpr double kMostUnusual = 100.0;
-
-/// Two loops between nodes so near to each other, on both sides, tell one story.
-constexpr std::size_t kSameStretch = 12;
-
+/// Two loops between the same two stretches of the way tell one story.
 bool are_of_same_stretches(const PoseConstraint& one, const PoseConstraint& other) {
   const auto apart = [](std::size_t a, std::size_t b) { return std::max(a, b) - std::min(a, b); };
-  return apart(one.a, other.a) <= kSameStretch && apart(one.b, other.b) <= kSameStretch;
+  const std::size_t near = kInference.agreement.same_stretch;
+  return apart(one.a, other.a) <= near && apart(one.b, other.b) <= near;
 }
-
-bool agrees(const Pose2& off) { return is_within(off, kAgrees_m, kAgrees_rad); }
 
 /// The best member of each node.
 std::vector<PoseConstraint> constraints_of(const LoopCluster& cluster) {
@@ -39,11 +25,11 @@ std::vector<PoseConstraint> constraints_of(const LoopCluster& cluster) {
   std::set<std::size_t> of_a;
   std::set<std::size_t> of_b;
   for (const LoopCandidate& member : cluster.members) {
-    if (result.size() == kMembersUsed) break;
+    if (result.size() == kInference.objective.members_used) break;
     if (of_a.count(member.a) != 0 || of_b.count(member.b) != 0) continue;
     of_a.insert(member.a);
     of_b.insert(member.b);
-    result.push_back({member.a, member.b, member.a_from_b, member.covariance, kLoopLoss});
+    result.push_back({member.a, member.b, member.a_from_b, member.covariance, kInference.agreement.match_loss});
   }
   return result;
 }
@@ -64,10 +50,11 @@ MapObjective::MapObjective(const std::vector<std::shared_ptr<const ScanView>>& v
 }
 
 MapHypothesis MapObjective::undecided(std::vector<Pose2> map_from_node) const {
+  const double apart_m = kInference.search.components_apart_m;
   MapHypothesis choice;
   choice.edge_choice.assign(edges_.size(), kCut);
   choice.accepted.assign(clusters_.size(), 0);
-  choice.refused_off.assign(clusters_.size(), Pose2{kComponentsApart_m, kComponentsApart_m, 0.0});
+  choice.refused_off.assign(clusters_.size(), Pose2{apart_m, apart_m, 0.0});
   choice.map_from_node = std::move(map_from_node);
   return choice;
 }
@@ -80,7 +67,7 @@ MapHypothesis MapObjective::chain_alone() {
       choice.edge_choice[i] = 0;
       choice.map_from_node[i + 1] = choice.map_from_node[i] * edges_[i].candidates.front().a_from_b;
     } else {
-      next_component_m += kComponentsApart_m;
+      next_component_m += kInference.search.components_apart_m;
       choice.map_from_node[i + 1] = {next_component_m, 0.0, 0.0};
     }
   }
@@ -93,11 +80,13 @@ MapHypothesis MapObjective::of_map(std::vector<Pose2> map_from_node) {
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     const Pose2 taken = inverse(choice.map_from_node[i]) * choice.map_from_node[i + 1];
     for (std::size_t k = 0; k < edges_[i].candidates.size() && choice.edge_choice[i] == kCut; ++k) {
-      if (agrees(inverse(edges_[i].candidates[k].a_from_b) * taken)) choice.edge_choice[i] = static_cast<int>(k);
+      const bool is_taken = agrees(edges_[i].candidates[k].a_from_b, taken, kInference.agreement.agrees);
+      if (is_taken) choice.edge_choice[i] = static_cast<int>(k);
     }
   }
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
-    choice.accepted[k] = clusters_[k].strength >= kLeastStrength && agrees(off(choice, k)) ? 1 : 0;
+    const bool counts = clusters_[k].strength >= kInference.objective.least_strength;
+    choice.accepted[k] = counts && is_within(off(choice, k), kInference.agreement.agrees) ? 1 : 0;
   }
   for (std::size_t i = 0; i < edges_.size(); ++i) {  // what nothing else joins stays with the chain
     if (choice.edge_choice[i] != kCut || !edges_[i].exists()) continue;
@@ -123,8 +112,8 @@ std::vector<PoseConstraint> MapObjective::constraints(const MapHypothesis& choic
 }
 
 void MapObjective::solve(MapHypothesis& choice) const {
-  constexpr int kIterations = 20;
-  PoseGraphSolution solution = solve_pose_graph(choice.map_from_node, constraints(choice), kIterations);
+  PoseGraphSolution solution =
+      solve_pose_graph(choice.map_from_node, constraints(choice), kInference.objective.iterations);
   choice.map_from_node = std::move(solution.map_from_node);
   choice.chi_square = solution.chi_square;
 }
@@ -137,7 +126,7 @@ double MapObjective::worth_in(const MapHypothesis& choice, std::size_t cluster) 
   double strongest = 0.0;
   for (const ConflictingLoop& rival : conflicts_[cluster]) {
     if (rival.strength <= strongest) continue;
-    if (!is_within(off(choice, rival.cluster), kContradicts_m, kContradicts_rad)) strongest = rival.strength;
+    if (!is_within(off(choice, rival.cluster), kInference.agreement.contradicts)) strongest = rival.strength;
   }
   return std::clamp(clusters_[cluster].strength - strongest, 0.0, options_.trust_cap);
 }
@@ -152,31 +141,34 @@ std::vector<std::size_t> MapObjective::rings(const MapHypothesis& choice) const 
 
 /// Of alternatives that are not the best, of links that are cut, and of unusual steps and turns.
 double MapObjective::cost_of_edges(const MapHypothesis& choice) const {
+  const ObjectiveNumbers& numbers = kInference.objective;
   double cost = 0.0;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     const EdgeChoices& edge = edges_[i];
     if (!edge.exists() || edge.probability >= options_.doubt_below) continue;
     if (choice.edge_choice[i] == kCut) {
-      const double p = std::clamp(std::max(edge.probability, edge.any_probability), 1e-3, 1.0 - 1e-6);
-      cost += std::max(0.0, log_odds_of(p) + kPriorOfEdges);
+      const double p = std::clamp(std::max(edge.probability, edge.any_probability), numbers.least_probability,
+                                  1.0 - 1e-6);  // its log odds stay finite
+      cost += std::max(0.0, log_odds_of(p) + kLoops.members.prior);
     } else {
       const auto taken = static_cast<std::size_t>(choice.edge_choice[i]);
-      cost += edge.candidates.front().score - edge.candidates[taken].score + (taken == 0 ? 0.0 : kAgainstChain);
+      cost +=
+          edge.candidates.front().score - edge.candidates[taken].score + (taken == 0 ? 0.0 : numbers.against_odometry);
     }
     const Pose2& from = choice.map_from_node[i];
     const Pose2& to = choice.map_from_node[i + 1];
     const double steps = (from.translation() - to.translation()).norm() / usual_.step_m;
     const double turns = angle_between(from.theta_rad, to.theta_rad) / usual_.turn_rad;
     for (const double times : {steps, turns}) {
-      cost += options_.step_penalty * std::clamp(times - 1.0, 0.0, kMostUnusual);
+      cost += options_.step_penalty * std::clamp(times - 1.0, 0.0, numbers.most_unusual);
     }
   }
   return cost;
 }
 
 void MapObjective::rate(MapHypothesis& choice) {
-  choice.value = MapScore::kWeight * score_.of(choice.map_from_node, rings(choice)) - 0.5 * choice.chi_square -
-                 cost_of_edges(choice) + worth_of_loops(choice);
+  choice.value = kInference.map_score_weights.weight * score_.of(choice.map_from_node, rings(choice)) -
+                 0.5 * choice.chi_square - cost_of_edges(choice) + worth_of_loops(choice);
 }
 
 double MapObjective::worth_of_loops(const MapHypothesis& choice) const {

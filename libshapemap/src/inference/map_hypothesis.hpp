@@ -13,13 +13,6 @@
 
 namespace shapemap {
 
-/// A map that is nearer than this to what a loop or a link says agrees with it.
-inline constexpr double kAgrees_m = 0.35;
-inline constexpr double kAgrees_rad = 4 * kDegree;
-
-/// Weaker clusters are of no account.
-inline constexpr double kLeastStrength = 4.0;
-
 /// What has been decided about loops and links, and the map that follows.
 struct MapHypothesis {
   std::vector<int> edge_choice;

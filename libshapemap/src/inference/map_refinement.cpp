@@ -5,15 +5,13 @@
 #include <cmath>
 #include <optional>
 
+#include "inference_numbers.hpp"
 #include "shapemap/core/parallel_for.hpp"
 #include "shapemap/inference/map_score.hpp"
 #include "shapemap/matching/match_probability.hpp"
 
 namespace shapemap {
 namespace {
-
-constexpr double kMetresPerRadian = 1.5;  // scans that look elsewhere share less of what they see
-constexpr double kLossScale = 1.5;
 
 struct Neighbour {
   std::size_t a;
@@ -26,10 +24,10 @@ std::vector<Neighbour> neighbours(const std::vector<Pose2>& poses, const Refinem
   std::vector<std::vector<Neighbour>> near(poses.size());
   std::vector<std::vector<Neighbour>> far(poses.size());
   for (const auto& [a, b] : near_pairs(poses, options.within_m)) {
-    if (b - a < 2) continue;
+    if (b - a < kInference.map_score.least_apart) continue;
     const double apart = (poses[a].translation() - poses[b].translation()).norm() +
-                         kMetresPerRadian * angle_between(poses[a].theta_rad, poses[b].theta_rad);
-    (b - a < 12 ? near : far)[b].push_back({a, b, apart});
+                         kInference.refinement.m_per_rad * angle_between(poses[a].theta_rad, poses[b].theta_rad);
+    (b - a < kInference.agreement.same_stretch ? near : far)[b].push_back({a, b, apart});
   }
   std::vector<Neighbour> chosen;
   for (auto* groups : {&near, &far}) {
@@ -48,6 +46,7 @@ std::vector<Neighbour> neighbours(const std::vector<Pose2>& poses, const Refinem
 RefinedMap refine_map(const std::vector<std::shared_ptr<const ScanView>>& views, std::vector<Pose2> map_from_node,
                       const std::vector<PoseConstraint>& chain, const MatchSearchOptions& search,
                       const RefinementOptions& options, int threads, RunObserver& observer) {
+  const PoseTolerance most_off{options.most_off_m, options.most_off_rad};
   RefinedMap map;
   for (int round = 0; round < options.rounds && observer.keep_going(); ++round) {
     const std::vector<Neighbour> pairs = neighbours(map_from_node, options);
@@ -56,22 +55,18 @@ RefinedMap refine_map(const std::vector<std::shared_ptr<const ScanView>>& views,
       const auto [a, b, unused] = pairs[i];
       const Pose2 expected = inverse(map_from_node[a]) * map_from_node[b];
       const MatchCandidate pose = refined_candidate(*views[a], *views[b], expected, search);
-      const Pose2 off = inverse(expected) * pose.ref_from_query;
       const double agree = pose.visibility.agree / std::max(pose.visibility.total(), 1e-9);
-      if (agree < options.least_agree || off.translation().norm() > options.most_off_m ||
-          std::abs(off.theta_rad) > options.most_off_rad) {
-        return;
-      }
-      found[i] = PoseConstraint{a, b, pose.ref_from_query, pose_covariance(pose.fit), kLossScale};
+      if (agree < options.least_agree || !agrees(expected, pose.ref_from_query, most_off)) return;
+      found[i] = PoseConstraint{a, b, pose.ref_from_query, pose_covariance(pose.fit), kInference.refinement.loss};
     });
     map.neighbours.clear();
     for (const auto& constraint : found) {
       if (constraint) map.neighbours.push_back(*constraint);
     }
     std::vector<PoseConstraint> constraints = chain;
-    for (PoseConstraint& edge : constraints) edge.loss_scale = kLossScale;
+    for (PoseConstraint& edge : constraints) edge.loss_scale = kInference.refinement.loss;
     constraints.insert(constraints.end(), map.neighbours.begin(), map.neighbours.end());
-    map_from_node = solve_pose_graph(map_from_node, constraints, 30).map_from_node;
+    map_from_node = solve_pose_graph(map_from_node, constraints).map_from_node;
   }
   map.map_from_node = std::move(map_from_node);
   return map;

@@ -5,69 +5,62 @@
 #include <cmath>
 #include <map>
 
+#include "inference_numbers.hpp"
+#include "loops/loops_numbers.hpp"
 #include "shapemap/core/parallel_for.hpp"
 
 namespace shapemap {
 namespace {
 
-constexpr double kWithin_m = 6.0;
-constexpr std::size_t kLeastApart = 2;   // along the chain
-constexpr std::size_t kSameStretch = 8;  // all pairs of nodes this near along the chain are asked, else one in four
-/// What a node can gain by all nodes of other stretches: the tenth that looks at the same wall tells nothing new. Where
-/// many places are laid on each other, pairs that happen to go together would be without number.
-constexpr double kMostByOthers = 1.0;
-
-/// Nodes so many apart along a chain that no loop holds may be metres from where the map has them; so much of what they
-/// tell counts.
-constexpr std::size_t kLongChain = 40;
-constexpr double kUnheld = 0.2;
-
-constexpr std::size_t kStride = 3;
-constexpr double kSlack = 2.0;
-constexpr std::size_t kPairsBetween = 60;  // of two pieces, about so many tell enough
-
-/// Less changes nothing that matters.
+/// Whether a pair must be compared anew. Along each axis, so that what is known is of one small square.
 bool moved(const Pose2& a, const Pose2& b) {
-  return (a.translation() - b.translation()).lpNorm<Eigen::Infinity>() > 0.03 ||
-         angle_between(a.theta_rad, b.theta_rad) > 0.4 * kDegree;
+  const PoseTolerance& known = kInference.agreement.known;
+  return (a.translation() - b.translation()).lpNorm<Eigen::Infinity>() > known.m ||
+         angle_between(a.theta_rad, b.theta_rad) > known.rad;
 }
 
 /// Neighbours in the chain tell nothing new; of all others there are more than are needed.
 bool is_asked(std::size_t a, std::size_t b) {
-  return b - a >= kLeastApart && (b - a < kSameStretch || (a % 2 == 0 && b % 2 == 0));
+  const MapScoreNumbers& numbers = kInference.map_score;
+  return b - a >= numbers.least_apart && (b - a < numbers.same_stretch || (a % 2 == 0 && b % 2 == 0));
 }
 
 }  // namespace
 
 double MapScore::of_pair(const Visibility& v) {
   const double total = std::max(v.total(), 1e-9);
-  return 2.0 * std::log((0.2 + v.agree / total) / 0.2) - 2.0 * std::log((0.05 + v.crossed / total) / 0.05);
+  const MapScoreWeights& weights = kInference.map_score_weights;
+  return weights.agree * std::log((weights.agree_offset + v.agree / total) / weights.agree_offset) +
+         weights.crossed * std::log((weights.crossed_offset + v.crossed / total) / weights.crossed_offset);
 }
 
 double MapScore::of(const std::vector<Pose2>& map_from_node, const std::vector<std::size_t>& ring_of_node) {
   std::vector<RelativePose> pairs;
-  for (const auto& [a, b] : near_pairs(map_from_node, kWithin_m)) {
+  for (const auto& [a, b] : near_pairs(map_from_node, kInference.map_score.within_m)) {
     if (!is_asked(a, b)) continue;
-    const bool is_held = ring_of_node.empty() || b - a < kLongChain || ring_of_node[a] == ring_of_node[b];
-    pairs.push_back({a, b, inverse(map_from_node[a]) * map_from_node[b], is_held ? 1.0 : kUnheld});
+    const bool is_held =
+        ring_of_node.empty() || b - a < kLoops.aliasing.long_chain || ring_of_node[a] == ring_of_node[b];
+    pairs.push_back(
+        {a, b, inverse(map_from_node[a]) * map_from_node[b], is_held ? 1.0 : kInference.map_score_weights.unheld});
   }
   return of_pairs(pairs);
 }
 
 double MapScore::between(const std::vector<Pose2>& pose_in_submap, const std::vector<std::size_t>& f,
                          const std::vector<std::size_t>& g, const Pose2& f_from_g) {
+  const double within_m = kInference.map_score.within_m;
   std::vector<RelativePose> pairs;
   for (const std::size_t j : g) {
     const Pose2 there = f_from_g * pose_in_submap[j];
     for (const std::size_t i : f) {
-      if ((pose_in_submap[i].translation() - there.translation()).squaredNorm() >= kWithin_m * kWithin_m) continue;
+      if ((pose_in_submap[i].translation() - there.translation()).squaredNorm() >= within_m * within_m) continue;
       const Pose2 f_from_j = inverse(pose_in_submap[i]) * there;
       if (is_asked(std::min(i, j), std::max(i, j))) {
         pairs.push_back(i < j ? RelativePose{i, j, f_from_j, 1.0} : RelativePose{j, i, inverse(f_from_j), 1.0});
       }
     }
   }
-  const std::size_t stride = pairs.size() / kPairsBetween + 1;
+  const std::size_t stride = pairs.size() / kInference.map_score.pairs_between + 1;
   std::vector<RelativePose> some;
   for (std::size_t i = 0; i < pairs.size(); i += stride) some.push_back(pairs[i]);
   if (some.empty()) return 0.0;
@@ -85,21 +78,23 @@ double MapScore::of_pairs(const std::vector<RelativePose>& pairs, double each_st
   }
   parallel_for(stale.size(), threads_, [&](std::size_t k) {
     const RelativePose& pair = pairs[stale[k]];
-    const Visibility seen = visibility(*views_[pair.a], *views_[pair.b], pair.a_from_b, options_, kSlack, kStride);
+    const Visibility seen = visibility(*views_[pair.a], *views_[pair.b], pair.a_from_b, options_,
+                                       kInference.map_score.slack, kInference.map_score.stride);
     *known[stale[k]] = {pair.a_from_b, of_pair(seen)};
   });
   double sum = 0.0;
   std::map<std::size_t, double> by_others;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const double value = known[i]->value * each_stands_for * pairs[i].counts;
-    if (value < 0.0 || pairs[i].b - pairs[i].a < kSameStretch) {
+    if (value < 0.0 || pairs[i].b - pairs[i].a < kInference.map_score.same_stretch) {
       sum += value;
     } else {
       by_others[pairs[i].a] += 0.5 * value;
       by_others[pairs[i].b] += 0.5 * value;
     }
   }
-  for (const auto& [unused, gain] : by_others) sum += kMostByOthers * (1.0 - std::exp(-gain / kMostByOthers));
+  const double most = kInference.map_score_weights.most_by_others;
+  for (const auto& [unused, gain] : by_others) sum += most * (1.0 - std::exp(-gain / most));
   return sum;
 }
 

@@ -10,16 +10,13 @@
 #include <system_error>
 
 #include "edge_moves.hpp"
+#include "inference_numbers.hpp"
 #include "loop_moves.hpp"
 #include "map_hypothesis.hpp"
 #include "submap_merging.hpp"
 
 namespace shapemap {
 namespace {
-
-/// No more maps are assembled when so many in a row are not better by this share.
-constexpr int kAssembliesInVain = 3;
-constexpr double kLeastGain = 0.01;
 
 /// Passes on whether to keep going, and remembers for other threads: an observer is asked from one only.
 class StopSign : public RunObserver {
@@ -57,12 +54,12 @@ MapHypothesis assembled(MapObjective& problem, const std::vector<EdgeChoices>& e
                         const MapSearchOptions& options, RunObserver& observer) {
   MapHypothesis best;
   int in_vain = 0;
-  for (int variant = 0; variant < options.assemblies && in_vain < kAssembliesInVain; ++variant) {
+  for (int variant = 0; variant < options.assemblies && in_vain < kInference.search.assemblies_in_vain; ++variant) {
     if (variant > 0 && !observer.keep_going()) break;
     MapHypothesis trial =
-        problem.of_map(merged_submaps(edges, candidates, map_of_odometry, problem.score(), variant, observer));
-    const bool is_better =
-        variant == 0 || trial.value > best.value + std::max(options.least_gain, kLeastGain * std::abs(best.value));
+        problem.of_map(merged_submaps(edges, candidates, map_of_odometry, problem.score(), options, variant, observer));
+    const double least_gain = std::max(options.least_gain, kInference.search.least_gain_share * std::abs(best.value));
+    const bool is_better = variant == 0 || trial.value > best.value + least_gain;
     in_vain = is_better ? 0 : in_vain + 1;
     if (is_better) best = std::move(trial);
   }

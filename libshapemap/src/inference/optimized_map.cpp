@@ -4,20 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "inference_numbers.hpp"
 #include "loops/loop_candidates.hpp"
+#include "loops/loops_numbers.hpp"
 #include "shapemap/inference/map_refinement.hpp"
 #include "shapemap/inference/map_search.hpp"
 #include "shapemap/loops/perceptual_aliasing.hpp"
 
 namespace shapemap {
 namespace {
-
-/// Within a piece of the chain that has no less probable link, poses are good enough to compare loops.
-constexpr double kTrusted = 0.5;
-
-/// A loop that is closed stays in the graph by so many of its alignments, while all neighbours are aligned anew.
-constexpr std::size_t kMembersKept = 3;
-constexpr double kLoopLoss = 2.0;
 
 /// Fills in what hangs together, and by what.
 void find_parts(const KeyframeGraph& graph, const std::vector<PoseConstraint>& loops, Improbable improbable,
@@ -47,7 +42,7 @@ void find_parts(const KeyframeGraph& graph, const std::vector<PoseConstraint>& l
 std::vector<std::size_t> trusted_submaps(const std::vector<EdgeChoices>& edges) {
   std::vector<std::size_t> submap(edges.size() + 1, 0);
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    submap[i + 1] = submap[i] + (edges[i].exists() && edges[i].probability >= kTrusted ? 0 : 1);
+    submap[i + 1] = submap[i] + (edges[i].exists() && edges[i].probability >= kInference.search.trusted ? 0 : 1);
   }
   return submap;
 }
@@ -57,8 +52,9 @@ std::vector<PoseConstraint> loop_constraints(const std::vector<LoopCluster>& clu
   std::vector<PoseConstraint> constraints;
   for (const std::size_t k : accepted) {
     const std::vector<LoopCandidate>& members = clusters[k].members;
-    for (std::size_t m = 0; m < std::min(kMembersKept, members.size()); ++m) {
-      constraints.push_back({members[m].a, members[m].b, members[m].a_from_b, members[m].covariance, kLoopLoss});
+    for (std::size_t m = 0; m < std::min(kInference.objective.members_kept, members.size()); ++m) {
+      constraints.push_back(
+          {members[m].a, members[m].b, members[m].a_from_b, members[m].covariance, kInference.agreement.match_loss});
     }
   }
   return constraints;
@@ -67,8 +63,8 @@ std::vector<PoseConstraint> loop_constraints(const std::vector<LoopCluster>& clu
 /// Whether the map is at all what a loop says: robust losses let all others outvote one that is wrong.
 bool is_closed(const LoopCluster& cluster, const std::vector<Pose2>& map_from_keyframe) {
   const LoopCandidate& best = cluster.members.front();
-  const Pose2 off = inverse(best.a_from_b) * (inverse(map_from_keyframe[best.a]) * map_from_keyframe[best.b]);
-  return is_within(off, kContradicts_m, kContradicts_rad);
+  return agrees(best.a_from_b, inverse(map_from_keyframe[best.a]) * map_from_keyframe[best.b],
+                kInference.agreement.contradicts);
 }
 
 ClosedLoop closed_loop(const KeyframeGraph& graph, const LoopCluster& cluster) {
@@ -107,9 +103,10 @@ OptimizedMap optimized_map(const KeyframeGraph& graph, const std::vector<LoopCan
   OptimizedMap map = map_of_odometry(graph, options);
   const NodeViews views = views_of(graph);
   const std::vector<EdgeChoices> edges = edge_choices(graph);
-  const std::vector<LoopCandidate> candidates = without_aliases(found, edges, map.map_from_keyframe);
+  const std::vector<LoopCandidate> candidates =
+      without_aliases(found, edges, map.map_from_keyframe, options.map_search.doubt_below);
   const std::vector<LoopCluster> clusters =
-      loop_clusters(candidates, map.map_from_keyframe, trusted_submaps(edges), {});
+      loop_clusters(candidates, map.map_from_keyframe, trusted_submaps(edges), kLoops.clusters);
   const VisibilityOptions& visibility = options.matcher.search.visibility;
   const MapSolution solution =
       close_loops(views, edges, candidates, clusters, visibility, options.map_search, execution.threads, observer);

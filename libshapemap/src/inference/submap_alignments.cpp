@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "submap_alignments.hpp"
+#include "inference_numbers.hpp"
+#include "loops/loops_numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,22 +11,6 @@
 
 namespace shapemap {
 namespace {
-
-/// Joints say the same when they differ by no more, and a little more for each node that lies between them.
-constexpr double kSame_m = 0.40;
-constexpr double kSame_rad = 6 * kDegree;
-constexpr double kDrift_m = 0.02;
-constexpr double kDrift_rad = 0.15 * kDegree;
-
-/// Scans see the same walls: witnesses do not add up without limit.
-constexpr double kMostStrength = 20.0;
-
-/// Of two pieces; further ones start from joints that are worth little.
-constexpr std::size_t kMostWays = 16;
-
-/// What a joint counts for in the mean, at least; and its direction, against its place: as if the scan were so large.
-constexpr double kLeastWeight = 0.1;
-constexpr double kSquaredSize_m2 = 4.0;
 
 std::size_t apart(std::size_t i, std::size_t j) { return i < j ? j - i : i - j; }
 
@@ -42,17 +28,19 @@ SubmapAlignments::Seen SubmapAlignments::seen_from(std::size_t f, std::size_t jo
 bool SubmapAlignments::agree(const Pose2& f_from_g, const Seen& one, const Seen& seed) {
   const Pose2 expected = f_from_g * one.g_from_b;
   const auto nodes = static_cast<double>(apart(one.a, seed.a) + apart(one.b, seed.b));
-  return (expected.translation() - one.f_from_b.translation()).norm() < kSame_m + kDrift_m * nodes &&
-         angle_between(expected.theta_rad, one.f_from_b.theta_rad) < kSame_rad + kDrift_rad * nodes;
+  const PoseTolerance& same = kLoops.clusters.same;
+  const PoseTolerance& drift = kInference.agreement.drift_per_node;
+  return agrees(expected, one.f_from_b, {same.m + drift.m * nodes, same.rad + drift.rad * nodes});
 }
 
 /// The weighted mean of places and directions (Umeyama 1991).
 Pose2 SubmapAlignments::mean_of(const std::vector<Seen>& joints) {
+  const MergingNumbers& numbers = kInference.merging;
   Point2 mean_f = Point2::Zero();
   Point2 mean_g = Point2::Zero();
   double sum = 0.0;
   for (const Seen& joint : joints) {
-    const double weight = joint.worth + kLeastWeight;
+    const double weight = joint.worth + numbers.least_weight;
     mean_f += weight * joint.f_from_b.translation();
     mean_g += weight * joint.g_from_b.translation();
     sum += weight;
@@ -62,20 +50,21 @@ Pose2 SubmapAlignments::mean_of(const std::vector<Seen>& joints) {
   double sine = 0.0;
   double cosine = 0.0;
   for (const Seen& joint : joints) {
-    const double weight = joint.worth + kLeastWeight;
+    const double weight = joint.worth + numbers.least_weight;
     const Point2 p = joint.f_from_b.translation() - mean_f;
     const Point2 q = joint.g_from_b.translation() - mean_g;
     const double turn_rad = joint.f_from_b.theta_rad - joint.g_from_b.theta_rad;
-    sine += weight * (q.x() * p.y() - q.y() * p.x() + kSquaredSize_m2 * std::sin(turn_rad));
-    cosine += weight * (q.dot(p) + kSquaredSize_m2 * std::cos(turn_rad));
+    sine += weight * (q.x() * p.y() - q.y() * p.x() + numbers.size_m2 * std::sin(turn_rad));
+    cosine += weight * (q.dot(p) + numbers.size_m2 * std::cos(turn_rad));
   }
   const double theta_rad = std::atan2(sine, cosine);
   const Point2 shift = mean_f - rotate(mean_g, theta_rad);
   return {shift.x(), shift.y(), theta_rad};
 }
 
-/// As that of a cluster of loops: the best joint of each node, summed over the side that says less.
-double SubmapAlignments::strength(const std::vector<Seen>& joints) {
+/// As that of a cluster of loops: the best joint of each node, summed over the side that says less. Scans see the same
+/// walls: witnesses do not add up without limit.
+double SubmapAlignments::strength(const std::vector<Seen>& joints) const {
   std::map<std::size_t, double> by_f;
   std::map<std::size_t, double> by_g;
   for (const Seen& joint : joints) {
@@ -88,7 +77,7 @@ double SubmapAlignments::strength(const std::vector<Seen>& joints) {
   double of_g = 0.0;
   for (const auto& [unused, worth] : by_f) of_f += worth;
   for (const auto& [unused, worth] : by_g) of_g += worth;
-  return std::min({of_f, of_g, kMostStrength});
+  return std::min({of_f, of_g, trust_cap_});
 }
 
 std::vector<SubmapAlignment> SubmapAlignments::ways(std::size_t f, const std::vector<std::size_t>& between) const {
@@ -99,7 +88,7 @@ std::vector<SubmapAlignment> SubmapAlignments::ways(std::size_t f, const std::ve
   std::vector<SubmapAlignment> found;
   std::set<std::size_t> used;
   for (const Seen& seed : seen) {
-    if (found.size() == kMostWays) break;
+    if (found.size() == kInference.merging.most_ways) break;
     if (used.count(seed.joint) != 0) continue;
     SubmapAlignment way;
     std::vector<Seen> agreeing;
@@ -118,8 +107,7 @@ std::vector<SubmapAlignment> SubmapAlignments::ways(std::size_t f, const std::ve
 
 bool SubmapAlignments::holds(const SubmapCandidate& joint) const {
   const PoseConstraint& c = joint.constraint;
-  const Pose2 off = inverse(c.a_from_b) * (inverse(submap_from_node_[c.a]) * submap_from_node_[c.b]);
-  return is_within(off, kSame_m, kSame_rad);
+  return agrees(c.a_from_b, inverse(submap_from_node_[c.a]) * submap_from_node_[c.b], kLoops.clusters.same);
 }
 
 std::vector<Crossing> crossings(const std::vector<std::size_t>& of_f, const std::vector<std::size_t>& of_g) {

@@ -23,12 +23,13 @@ struct SubmapAlignment {
   double gain = 0.0;
 };
 
-/// Joints by index, poses by node, each in the frame of its piece.
+/// Joints by index, poses by node, each in the frame of its piece. What all joints of two pieces are worth together is
+/// at most `trust_cap`.
 class SubmapAlignments {
  public:
   SubmapAlignments(const std::vector<SubmapCandidate>& joints, const std::vector<Pose2>& submap_from_node,
-                   const std::vector<std::size_t>& submap_of_node)
-      : joints_(joints), submap_from_node_(submap_from_node), submap_of_node_(submap_of_node) {}
+                   const std::vector<std::size_t>& submap_of_node, double trust_cap)
+      : joints_(joints), submap_from_node_(submap_from_node), submap_of_node_(submap_of_node), trust_cap_(trust_cap) {}
 
   /// What some of `between`, the joints of `f` and another piece, agree on; those of the best joints first, and no more
   /// than can be right.
@@ -50,11 +51,12 @@ class SubmapAlignments {
   Seen seen_from(std::size_t f, std::size_t joint) const;
   static bool agree(const Pose2& f_from_g, const Seen& one, const Seen& seed);
   static Pose2 mean_of(const std::vector<Seen>& joints);
-  static double strength(const std::vector<Seen>& joints);
+  double strength(const std::vector<Seen>& joints) const;
 
   const std::vector<SubmapCandidate>& joints_;
   const std::vector<Pose2>& submap_from_node_;
   const std::vector<std::size_t>& submap_of_node_;
+  double trust_cap_;
 };
 
 /// Where the chain goes from one piece to the other and back: nodes of both, `of_f` and `of_g`, in order.

@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "inference_numbers.hpp"
+#include "loops/loops_numbers.hpp"
 #include "motion/step_statistics.hpp"
 #include "shapemap/graph/pose_graph.hpp"
 #include "shapemap/matching/match_probability.hpp"
@@ -16,29 +18,6 @@
 
 namespace shapemap {
 namespace {
-
-/// Links that are at least so probable are not questioned here.
-constexpr double kSure = 0.97;
-
-/// Alignments by themselves allow for scans of different places, which neighbours are not. And hypotheses support each
-/// other, though each by itself be improbable.
-constexpr double kPrior = 2.0;
-constexpr double kMostPerNode = 6.0;
-constexpr double kLoss = 2.0;
-
-/// Against each length of a usual step that one is longer, and against being elsewhere than the chain's next: of places
-/// of which nothing is known, some look alike.
-constexpr double kStepPenalty = 4.0;
-constexpr double kRevisitPenalty = 10.0;
-constexpr double kPenaltyPerLogStep = 2.0;
-
-/// Ways that are looked into, of two pieces.
-constexpr std::size_t kWaysTried = 4;
-
-/// What a way gains or loses by chance, at most.
-constexpr double kNoise = 4.0;
-
-constexpr int kIterations = 10;
 
 using SubmapPair = std::pair<std::size_t, std::size_t>;
 
@@ -56,8 +35,10 @@ double log_odds(double probability) {
 
 class Assembly {
  public:
-  Assembly(const std::vector<EdgeChoices>& edges, std::vector<Pose2> map_of_odometry, MapScore& score)
+  Assembly(const std::vector<EdgeChoices>& edges, std::vector<Pose2> map_of_odometry, MapScore& score,
+           const MapSearchOptions& options)
       : edges_(edges),
+        options_(options),
         chain_(map_of_odometry),
         pose_(std::move(map_of_odometry)),
         score_(score),
@@ -78,11 +59,12 @@ class Assembly {
       const std::vector<EdgeChoices::Candidate>& candidates = edges_[i].candidates;
       for (const EdgeChoices::Candidate& way : candidates) {
         const double behind = std::min(0.0, way.score - candidates.front().score);
-        add_joint({i, i + 1, way.a_from_b, way.covariance, kLoss}, log_odds(edges_[i].probability * std::exp(behind)));
+        add_joint({i, i + 1, way.a_from_b, way.covariance, kInference.agreement.match_loss},
+                  log_odds(edges_[i].probability * std::exp(behind)));
       }
     }
     for (const LoopCandidate& loop : loops) {
-      add_joint({loop.a, loop.b, loop.a_from_b, loop.covariance, kLoss}, loop.log_odds);
+      add_joint({loop.a, loop.b, loop.a_from_b, loop.covariance, kInference.agreement.match_loss}, loop.log_odds);
     }
   }
 
@@ -91,7 +73,7 @@ class Assembly {
     std::mt19937_64 random(static_cast<std::uint64_t>(variant));
     for (SubmapCandidate& joint : joints_) {
       const double share = std::ldexp(static_cast<double>(random() >> 11U), -53);
-      joint.noise = kNoise * (2.0 * share - 1.0);
+      joint.noise = kInference.merging.noise * (2.0 * share - 1.0);
     }
   }
 
@@ -115,39 +97,46 @@ class Assembly {
   }
 
  private:
-  bool is_sure(std::size_t edge) const { return edges_[edge].exists() && edges_[edge].probability >= kSure; }
+  bool is_sure(std::size_t edge) const {
+    return edges_[edge].exists() && edges_[edge].probability >= options_.doubt_below;
+  }
 
   void add_joint(const PoseConstraint& constraint, double odds) {
     if (log_[constraint.a] != log_[constraint.b]) return;
     const std::size_t f = submap_[constraint.a];
     const std::size_t g = submap_[constraint.b];
     (f == g ? within_[f] : between_[{std::min(f, g), std::max(f, g)}]).push_back(joints_.size());
-    joints_.push_back({constraint, std::clamp(odds + kPrior, 0.0, kMostPerNode), 0.0});
+    joints_.push_back({constraint, worth_among_others(odds), 0.0});
   }
 
   double cost_of_steps(const SubmapPair& pair, const Pose2& f_from_g) const {
+    const MergingNumbers& numbers = kInference.merging;
     double cost = 0.0;
     std::size_t least = submap_.size();
     for (const Crossing& crossing : crossings(nodes_[pair.first], nodes_[pair.second])) {
       const double metres =
           (pose_[crossing.in_f].translation() - (f_from_g * pose_[crossing.in_g]).translation()).norm();
       const auto steps = static_cast<double>(crossing.num_steps);
-      const double longer = std::clamp(metres / (usual_step_m_ * steps) - 1.0, 0.0, 10.0);
-      cost += kStepPenalty * longer * std::sqrt(steps);
+      const double longer = std::clamp(metres / (usual_step_m_ * steps) - 1.0, 0.0, numbers.most_longer);
+      cost += options_.step_penalty * longer * std::sqrt(steps);
       least = std::min(least, crossing.num_steps);
     }
-    if (least > 1) cost += kRevisitPenalty + kPenaltyPerLogStep * std::log(static_cast<double>(least));
+    if (least > 1) {
+      cost += numbers.revisit_penalty + numbers.revisit_penalty_per_log_step * std::log(static_cast<double>(least));
+    }
     return cost;
   }
 
   Lead lead_of(const SubmapPair& pair) {
-    std::vector<SubmapAlignment> ways = SubmapAlignments(joints_, pose_, submap_).ways(pair.first, between_[pair]);
+    std::vector<SubmapAlignment> ways =
+        SubmapAlignments(joints_, pose_, submap_, options_.trust_cap).ways(pair.first, between_[pair]);
     const auto better = [](const SubmapAlignment& one, const SubmapAlignment& other) { return one.gain > other.gain; };
     for (SubmapAlignment& way : ways) way.gain -= cost_of_steps(pair, way.f_from_g);
     std::stable_sort(ways.begin(), ways.end(), better);
-    ways.resize(std::min(ways.size(), kWaysTried));
+    ways.resize(std::min(ways.size(), kInference.merging.ways_tried));
     for (SubmapAlignment& way : ways) {
-      way.gain += MapScore::kWeight * score_.between(pose_, nodes_[pair.first], nodes_[pair.second], way.f_from_g);
+      way.gain += kInference.map_score_weights.weight *
+                  score_.between(pose_, nodes_[pair.first], nodes_[pair.second], way.f_from_g);
     }
     std::stable_sort(ways.begin(), ways.end(), better);
     const double second = ways.size() > 1 ? std::max(0.0, ways[1].gain) : 0.0;
@@ -232,12 +221,12 @@ class Assembly {
       const EdgeChoices::Candidate& edge = edges_[n].candidates.front();
       add({n, n + 1, edge.a_from_b, edge.covariance, 0.0});
     }
-    const SubmapAlignments submaps(joints_, pose_, submap_);
+    const SubmapAlignments submaps(joints_, pose_, submap_, options_.trust_cap);
     const std::set<std::size_t> decided(taken.begin(), taken.end());
     for (const std::size_t joint : within_[f]) {
       if (decided.count(joint) != 0 || submaps.holds(joints_[joint])) add(joints_[joint].constraint);
     }
-    const std::vector<Pose2> solved = solve_pose_graph(poses, constraints, kIterations).map_from_node;
+    const std::vector<Pose2> solved = solve_pose_graph(poses, constraints, kInference.merging.iterations).map_from_node;
     for (std::size_t k = 0; k < nodes.size(); ++k) pose_[nodes[k]] = solved[k];
   }
 
@@ -257,6 +246,7 @@ class Assembly {
   }
 
   const std::vector<EdgeChoices>& edges_;
+  const MapSearchOptions& options_;
   std::vector<Pose2> chain_;
   std::vector<Pose2> pose_;  ///< in the frame of the piece
   MapScore& score_;
@@ -273,10 +263,10 @@ class Assembly {
 }  // namespace
 
 std::vector<Pose2> merged_submaps(const std::vector<EdgeChoices>& edges, const std::vector<LoopCandidate>& candidates,
-                                  std::vector<Pose2> map_of_odometry, MapScore& score, int variant,
-                                  RunObserver& observer) {
+                                  std::vector<Pose2> map_of_odometry, MapScore& score, const MapSearchOptions& options,
+                                  int variant, RunObserver& observer) {
   if (map_of_odometry.size() < 2) return map_of_odometry;
-  Assembly assembly(edges, std::move(map_of_odometry), score);
+  Assembly assembly(edges, std::move(map_of_odometry), score, options);
   assembly.add_joints(candidates);
   assembly.disturb(variant);
   return assembly.run(observer);

@@ -5,31 +5,13 @@
 #include <cmath>
 #include <optional>
 
+#include "inference_numbers.hpp"
 #include "shapemap/core/parallel_for.hpp"
 #include "shapemap/inference/map_score.hpp"
 #include "shapemap/matching/match_probability.hpp"
 
 namespace shapemap {
 namespace {
-
-/// Of two sub-scans. Those of whole scans are larger: these hold the errors of their sub-scans as well.
-constexpr LineNoise kNoise{0.012, 0.03};
-
-/// What whole scans say counts so many times less, in the deviation: it only holds what sub-scans leave free.
-constexpr double kKnownSlack = 5.0;
-
-/// The gate of the first round, in gates of the last, and what is left of it after each.
-constexpr double kFirstGate = 4.0;
-constexpr double kGateShrinks = 0.7;
-
-constexpr double kStiffness = 0.002;
-
-/// Beyond so many standard deviations an alignment of two sub-scans counts less and less.
-constexpr double kLoss = 2.0;
-
-/// Farther off than this, two sub-scans have found other surfaces.
-constexpr double kMostOff_m = 0.30;
-constexpr double kMostOff_rad = 4 * kDegree;
 
 class Refinement {
  public:
@@ -39,7 +21,7 @@ class Refinement {
       : views_(views), part_of_node_(part_of_node), line_(line), options_(options), threads_(threads) {
     // All poses are solved for at once: a step of a single pair goes no farther than its lines.
     line_.max_iterations = 1;
-    line_.stiffness = kStiffness;
+    line_.stiffness = kInference.sweeps.stiffness;
     poses_ = map_from_node;
     for (std::size_t node = 0; node < views.size(); ++node) {
       first_.push_back(poses_.size());
@@ -49,21 +31,22 @@ class Refinement {
   }
 
   void hold(const std::vector<PoseConstraint>& known) {
+    const double slack = kInference.sweeps.known_slack;
     for (PoseConstraint constraint : known) {
-      constraint.covariance *= kKnownSlack * kKnownSlack;
-      constraint.loss_scale = kLoss;
+      constraint.covariance *= slack * slack;
+      constraint.loss_scale = kInference.agreement.match_loss;
       held_.push_back(constraint);
     }
   }
 
   void run_round(int round) {
+    const SweepRefinementNumbers& numbers = kInference.sweeps;
     line_.first_gate_m = line_.last_gate_m =
-        options_.gate_m * std::max(1.0, kFirstGate * std::pow(kGateShrinks, round));
+        options_.gate_m * std::max(1.0, numbers.first_gate * std::pow(numbers.gate_shrinks, round));
     std::vector<PoseConstraint> constraints = held_;
     const std::vector<PoseConstraint> found = aligned_pairs();
     constraints.insert(constraints.end(), found.begin(), found.end());
-    constexpr int kIterations = 30;
-    poses_ = solve_pose_graph(poses_, constraints, kIterations).map_from_node;
+    poses_ = solve_pose_graph(poses_, constraints).map_from_node;
   }
 
   SweepPoses result() const {
@@ -132,12 +115,13 @@ class Refinement {
   std::optional<PoseConstraint> aligned(const Pair& pair) const {
     const Pose2 expected = inverse(poses_[pair.a]) * poses_[pair.b];
     const LineFit fit = fit_to_lines(*pair.reference, *pair.query, expected, line_);
-    const Pose2 off = inverse(expected) * fit.ref_from_query;
-    if (fit.partners < options_.least_partners || off.translation().norm() > kMostOff_m ||
-        std::abs(off.theta_rad) > kMostOff_rad) {
+    const SweepRefinementNumbers& numbers = kInference.sweeps;
+    if (fit.partners < options_.least_partners || !agrees(expected, fit.ref_from_query, numbers.most_off)) {
       return std::nullopt;
     }
-    return PoseConstraint{pair.a, pair.b, fit.ref_from_query, pose_covariance(fit, kNoise), kLoss};
+    const LineNoise noise{numbers.noise_residual_m, numbers.noise_tangent};
+    return PoseConstraint{pair.a, pair.b, fit.ref_from_query, pose_covariance(fit, noise),
+                          kInference.agreement.match_loss};
   }
 
   const SweepViews& views_;

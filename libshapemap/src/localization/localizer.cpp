@@ -3,30 +3,12 @@
 
 #include <algorithm>
 
+#include "inference/inference_numbers.hpp"
+#include "localization_numbers.hpp"
 #include "place_hypotheses.hpp"
 #include "shapemap/inference/map_search.hpp"
 
 namespace shapemap {
-namespace {
-
-/// Where nobody has been, errors add up; by themselves they do not get a robot lost.
-constexpr double kErrorOfNew = 0.25;
-constexpr double kLeastOfNew = 2.0;
-
-/// After a link in doubt, so many keyframes are looked at to decide; and where so many tell nothing, none will.
-constexpr std::size_t kLookAhead = 24;
-
-/// Fewer keyframes do not tell places apart, even when all are known.
-constexpr std::size_t kShortest = 16;
-
-/// A wrong way shows within so many keyframes: until then, what was known on it does not count.
-constexpr std::size_t kLag = 12;
-
-/// Places of a stretch that are tried, likeliest first.
-constexpr std::size_t kMostTried = 16;
-
-}  // namespace
-
 Localizer::Localizer(const KeyframeGraph& graph, const RobustOptions& options, std::size_t active_component,
                      std::size_t first, LocalizationState state, const std::vector<LoopCandidate>& loops,
                      OptimizedMap& map)
@@ -46,7 +28,7 @@ Localizer::Localizer(const KeyframeGraph& graph, const RobustOptions& options, s
 std::size_t Localizer::go(std::size_t last) {
   for (std::size_t b = open_; b < last && !state_.is_lost; ++b) {
     const bool doubts = is_in_doubt(b);
-    if (doubts && b + kLookAhead > last) break;
+    if (doubts && b + kLocalization.localizer.look_ahead > last) break;
     if (!edge_exists(b) || (doubts && !decide(b))) {
       make_certain(good_);  // it is not known where the robot went on, but it is where it was
       get_lost();
@@ -62,14 +44,14 @@ void Localizer::expect(std::size_t b) {
   if (edge_exists(b)) {
     map_.map_from_keyframe[b] = map_.map_from_keyframe[b - 1] * edge_in_map(graph_, map_, b);
   } else {
-    map_.map_from_keyframe[b] = {kComponentsApart_m * static_cast<double>(b), 0.0, 0.0};
+    map_.map_from_keyframe[b] = {kInference.search.components_apart_m * static_cast<double>(b), 0.0, 0.0};
   }
 }
 
 bool Localizer::edge_exists(std::size_t b) const { return map_.edge_choice[b - 1] != kCut; }
 
 bool Localizer::is_in_doubt(std::size_t b) const {
-  return edge_exists(b) && stated_probability(graph_.edges[b - 1]) < kSureEdge;
+  return edge_exists(b) && stated_probability(graph_.edges[b - 1]) < kLocalization.redundancy.sure_edge;
 }
 
 /// False when the robot cannot be where it is expected.
@@ -78,21 +60,23 @@ bool Localizer::step(std::size_t b) {
   map_.component[b] = verification_.active_component();
   PlaceEvidence seen = verification_.look(map_, b, b);
   const bool is_new = !seen.replacement && seen.log_odds == 0.0;
-  if (is_new && good_ == b) seen.log_odds = -std::clamp(log_odds_ - kLeastOfNew, 0.0, kErrorOfNew);
-  log_odds_ = std::min(kSureOfPlace, log_odds_ + seen.log_odds);
+  if (is_new && good_ == b)
+    seen.log_odds =
+        -std::clamp(log_odds_ - kLocalization.localizer.least_of_new, 0.0, kLocalization.localizer.error_of_new);
+  log_odds_ = std::min(kLocalization.places.sure_of_place, log_odds_ + seen.log_odds);
   if (log_odds_ < 0.0) return false;
-  const bool tells_nothing = seen.log_odds <= 0.0 && seen.log_odds >= -kErrorOfNew;
+  const bool tells_nothing = seen.log_odds <= 0.0 && seen.log_odds >= -kLocalization.localizer.error_of_new;
   last_telling_ = tells_nothing ? last_telling_ : b;
   if (seen.replacement) {
     map_.map_from_keyframe[b] = pose_by(map_, *seen.replacement);
     verification_.let_go(b);
     pending_.emplace_back(b, std::move(*seen.replacement));
   }
-  const bool nothing_will = b >= last_telling_ + kLookAhead;
-  if (nothing_will && log_odds_ < kSureOfPlace) forget_pending();
-  if (log_odds_ == kSureOfPlace || (good_ == b && tells_nothing) || nothing_will) {
+  const bool nothing_will = b >= last_telling_ + kLocalization.localizer.look_ahead;
+  if (nothing_will && log_odds_ < kLocalization.places.sure_of_place) forget_pending();
+  if (log_odds_ == kLocalization.places.sure_of_place || (good_ == b && tells_nothing) || nothing_will) {
     good_ = b + 1;
-    make_certain(good_ - std::min(good_, kLag));
+    make_certain(good_ - std::min(good_, kLocalization.localizer.lag));
   }
   return true;
 }
@@ -134,7 +118,7 @@ bool Localizer::decide(std::size_t b) {
   const int chosen = map_.edge_choice[b - 1];
   const Pose2 before = map_.map_from_keyframe[b - 1];
   std::size_t end = b + 1;
-  while (end < b + kLookAhead && edge_exists(end)) ++end;
+  while (end < b + kLocalization.localizer.look_ahead && edge_exists(end)) ++end;
   PlaceHypotheses places;
   int best = chosen;
   for (int k = 0; k < static_cast<int>(graph_.edges[b - 1].candidates.size()); ++k) {
@@ -164,7 +148,7 @@ void Localizer::find_way(std::size_t last) {
     const std::size_t end_of_placed = place(first, end);
     if (end_of_placed > first) {
       open_ = end_of_placed;
-      state_ = {open_ < last, kSureOfPlace};
+      state_ = {open_ < last, kLocalization.places.sure_of_place};
     }
     first = end_of_placed > first ? end_of_placed : end;
   }
@@ -178,12 +162,12 @@ std::size_t Localizer::end_of_stretch(std::size_t first, std::size_t last) const
 
 /// Returns up to where it is in its place now.
 std::size_t Localizer::place(std::size_t first, std::size_t last) {
-  if (last - first < kShortest) return first;
+  if (last - first < kLocalization.localizer.shortest) return first;
   PlaceHypotheses places;
   std::size_t tried = 0;
   for (const auto& [seed, map_from_seed] : candidates(first, last)) {
     if (places.has(seed - first, map_from_seed)) continue;
-    if (++tried > kMostTried) break;
+    if (++tried > kLocalization.localizer.most_tried) break;
     places.add(verification_.lay(map_, first, last, seed, map_from_seed));
   }
   for (std::size_t b = first; b < last; ++b) expect(b);
@@ -239,7 +223,7 @@ void Localizer::take_edge_as_in_map(std::size_t b) {
   const std::vector<MatchCandidate>& candidates = graph_.edges[b - 1].candidates;
   map_.edge_choice[b - 1] = kCut;
   for (std::size_t k = 0; k < candidates.size() && map_.edge_choice[b - 1] == kCut; ++k) {
-    if (!is_within(inverse(candidates[k].ref_from_query) * in_map, kAsInMap_m, kAsInMap_rad)) continue;
+    if (!agrees(candidates[k].ref_from_query, in_map, kLocalization.redundancy.as_in_map)) continue;
     map_.edge_choice[b - 1] = static_cast<int>(k);
     map_.loop_constrained[b - 1] = true;
   }

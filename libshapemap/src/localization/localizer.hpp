@@ -8,6 +8,7 @@
 
 #include "graph/keyframe_graph.hpp"
 #include "inference/optimized_map.hpp"
+#include "localization_numbers.hpp"
 #include "place_verification.hpp"
 #include "redundant_keyframes.hpp"
 #include "shapemap/inference/robust_options.hpp"
@@ -18,7 +19,7 @@ namespace shapemap {
 /// Where the robot is after the last keyframe that is certain.
 struct LocalizationState {
   bool is_lost = false;
-  double log_odds = kSureOfPlace;  ///< that it is where it is expected
+  double log_odds = kLocalization.places.sure_of_place;  ///< that it is where it is expected
 };
 
 /// Goes along keyframes that are new to a map, puts them in their places there, and tells which it knows again. What it

@@ -4,21 +4,17 @@
 #include <algorithm>
 #include <utility>
 
+#include "inference/inference_numbers.hpp"
+#include "localization_numbers.hpp"
 #include "shapemap/inference/map_search.hpp"
 
 namespace shapemap {
 namespace {
 
-/// Of a stretch, at least sixteen keyframes are known; and eight more than at any other place.
-constexpr double kLeastLogOdds = 8.0;
-constexpr double kLeastLead = 4.0;
-
 bool are_one_place(const PlacedStretch& one, const PlacedStretch& other) {
-  const auto agree = [](const Pose2& a, const Pose2& b) {
-    return is_within(inverse(a) * b, kContradicts_m, kContradicts_rad);
-  };
-  return agree(one.map_from_keyframe.front(), other.map_from_keyframe.front()) &&
-         agree(one.map_from_keyframe.back(), other.map_from_keyframe.back());
+  const PoseTolerance& tolerance = kInference.agreement.contradicts;
+  return agrees(one.map_from_keyframe.front(), other.map_from_keyframe.front(), tolerance) &&
+         agrees(one.map_from_keyframe.back(), other.map_from_keyframe.back(), tolerance);
 }
 
 }  // namespace
@@ -32,14 +28,14 @@ bool PlaceHypotheses::add(PlacedStretch laid) {
 
 bool PlaceHypotheses::has(std::size_t keyframe, const Pose2& map_from_keyframe) const {
   return std::any_of(tried_.begin(), tried_.end(), [&](const PlacedStretch& laid) {
-    return is_within(inverse(laid.map_from_keyframe[keyframe]) * map_from_keyframe, kAsInMap_m, kAsInMap_rad);
+    return agrees(laid.map_from_keyframe[keyframe], map_from_keyframe, kLocalization.redundancy.as_in_map);
   });
 }
 
 bool PlaceHypotheses::is_sure() const {
-  if (tried_.empty() || best().log_odds < kLeastLogOdds) return false;
+  if (tried_.empty() || best().log_odds < kLocalization.places.least_log_odds) return false;
   return std::all_of(tried_.begin(), tried_.end(), [&](const PlacedStretch& laid) {
-    return best().log_odds - laid.log_odds >= kLeastLead || are_one_place(best(), laid);
+    return best().log_odds - laid.log_odds >= kLocalization.places.least_lead || are_one_place(best(), laid);
   });
 }
 

@@ -19,10 +19,6 @@ struct PlaceEvidence {
                           ///< else was seen, and 0 where nobody has been
 };
 
-/// The odds of a robot that is sure of where it is: two places that look otherwise than they should are put down to
-/// change, a third is not.
-inline constexpr double kSureOfPlace = 5.0;
-
 /// A stretch of the chain, laid at a place of the map.
 struct PlacedStretch {
   double log_odds = 0.0;                 ///< that the place is right, of all its keyframes

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "localization_numbers.hpp"
 #include "shapemap/core/parallel_for.hpp"
 #include "shapemap/inference/map_score.hpp"
 #include "shapemap/inference/map_search.hpp"
@@ -17,7 +18,7 @@ std::vector<std::vector<std::size_t>> earlier_at_place(const OptimizedMap& map, 
   std::vector<std::vector<std::pair<double, std::size_t>>> near(map.map_from_keyframe.size());
   for (const auto& [a, b] : near_pairs(map.map_from_keyframe, options.step_m)) {
     const Pose2 a_from_b = inverse(map.map_from_keyframe[a]) * map.map_from_keyframe[b];
-    if (map.component[a] != map.component[b] || !is_within(a_from_b, options.step_m, options.turn_rad)) continue;
+    if (map.component[a] != map.component[b] || !is_within(a_from_b, options.near())) continue;
     near[b].emplace_back(a_from_b.translation().norm(), a);
   }
   std::vector<std::vector<std::size_t>> earlier(near.size());
@@ -30,12 +31,12 @@ std::vector<std::vector<std::size_t>> earlier_at_place(const OptimizedMap& map, 
 
 /// Those that follow or precede such a one closely.
 std::vector<bool> near(const std::vector<bool>& is_unknown) {
-  constexpr std::size_t kNear = 24;
+  const std::size_t near = kLocalization.redundancy.in_doubt_near;
   std::vector<bool> result(is_unknown.size(), false);
   for (std::size_t b = 0; b < is_unknown.size(); ++b) {
     if (!is_unknown[b]) continue;
-    const std::size_t end = std::min(b + kNear + 1, result.size());
-    for (std::size_t i = b - std::min(b, kNear); i < end; ++i) result[i] = true;
+    const std::size_t end = std::min(b + near + 1, result.size());
+    for (std::size_t i = b - std::min(b, near); i < end; ++i) result[i] = true;
   }
   return result;
 }
@@ -52,7 +53,7 @@ std::vector<ReplacementKeyframe> replacements_for(const KeyframeGraph& graph,
     const Pose2 expected = inverse(map_from_keyframe[a]) * map_from_keyframe[b];
     const MatchCandidate pose =
         refined_candidate(*graph.keyframes[a].view, *graph.keyframes[b].view, expected, options.matcher.search);
-    const bool is_as_in_map = is_within(inverse(expected) * pose.ref_from_query, kAsInMap_m, kAsInMap_rad);
+    const bool is_as_in_map = agrees(expected, pose.ref_from_query, kLocalization.redundancy.as_in_map);
     if (is_as_in_map && shows_the_same(pose)) fitting.push_back({a, pose});
   }
   return fitting;
@@ -62,11 +63,11 @@ std::vector<bool> settled_keyframes(const KeyframeGraph& graph, const OptimizedM
   const std::size_t count = graph.keyframes.size();
   std::vector<bool> sure(graph.edges.size());
   for (std::size_t i = 0; i < sure.size(); ++i) {
-    sure[i] =
-        map.edge_choice[i] != kCut && (map.loop_constrained[i] || stated_probability(graph.edges[i]) >= kSureEdge);
+    sure[i] = map.edge_choice[i] != kCut &&
+              (map.loop_constrained[i] || stated_probability(graph.edges[i]) >= kLocalization.redundancy.sure_edge);
   }
   std::vector<bool> settled(count, false);
-  for (std::size_t i = 1; i + kKeyframesInUse < count; ++i) {
+  for (std::size_t i = 1; i + kLocalization.redundancy.keyframes_in_use < count; ++i) {
     settled[i] = sure[i - 1] && sure[i] && graph.keyframes[i].sweep_views.empty();
   }
   return settled;
@@ -79,19 +80,21 @@ RedundantKeyframes find_redundant_keyframes(const KeyframeGraph& graph, const Op
   std::vector<std::vector<ReplacementKeyframe>> fitting(settled.size());
   parallel_for(settled.size(), threads, [&](std::size_t b) {
     if (settled[b])
-      fitting[b] = replacements_for(graph, map.map_from_keyframe, b, earlier[b], kReplacementsTried, options);
+      fitting[b] = replacements_for(graph, map.map_from_keyframe, b, earlier[b],
+                                    kLocalization.redundancy.replacements_tried, options);
   });
   RedundantKeyframes result;
   result.of_keyframe.resize(settled.size());
   std::vector<bool> is_unknown(settled.size(), false);
   for (std::size_t b = 0; b < settled.size(); ++b) {
     if (!settled[b]) continue;
-    const auto is_long_before = [&](std::size_t a) { return a + kKeyframesInUse < b; };
+    const auto is_long_before = [&](std::size_t a) { return a + kLocalization.redundancy.keyframes_in_use < b; };
     const bool again = std::any_of(earlier[b].begin(), earlier[b].end(), is_long_before);
     const bool known = std::any_of(fitting[b].begin(), fitting[b].end(), [&](const ReplacementKeyframe& candidate) {
       return is_long_before(candidate.keyframe);
     });
-    is_unknown[b] = again && !known && fitting[b].size() < kReplacementsTried;  // or else not all were tried
+    is_unknown[b] = again && !known &&
+                    fitting[b].size() < kLocalization.redundancy.replacements_tried;  // or else not all were tried
     if (known) ++result.num_known;
     if (known || is_unknown[b]) ++result.num_again;
     for (const ReplacementKeyframe& candidate : fitting[b]) {
@@ -105,6 +108,10 @@ RedundantKeyframes find_redundant_keyframes(const KeyframeGraph& graph, const Op
     if (result.is_in_doubt[b]) result.of_keyframe[b].reset();
   }
   return result;
+}
+
+bool RedundantKeyframes::are_of_right_map() const {
+  return static_cast<double>(num_known) >= kLocalization.redundancy.right_map * static_cast<double>(num_again);
 }
 
 }  // namespace shapemap

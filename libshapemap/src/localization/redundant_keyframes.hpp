@@ -13,19 +13,6 @@
 /// not as the way was long.
 namespace shapemap {
 
-/// The last few keyframes are always kept: those to come are compared to them.
-inline constexpr std::size_t kKeyframesInUse = 16;
-
-/// A link this probable is as good as one that loops hold.
-inline constexpr double kSureEdge = 0.99;
-
-/// Two scans of one place must put each other where the map has them.
-inline constexpr double kAsInMap_m = 0.25;
-inline constexpr double kAsInMap_rad = 3 * kDegree;
-
-/// Keyframes at a place that are asked whether they can stand for another, nearest first.
-inline constexpr std::size_t kReplacementsTried = 3;
-
 /// An earlier keyframe that can stand for another.
 struct ReplacementKeyframe {
   std::size_t keyframe = 0;
@@ -50,7 +37,7 @@ struct RedundantKeyframes {
   std::size_t num_known = 0;      ///< those of them that show the same as it did then
 
   /// Of a map that is right, nearly all do; where rows of like rooms are laid on each other, a fourth does not.
-  bool are_of_right_map() const { return static_cast<double>(num_known) >= 0.95 * static_cast<double>(num_again); }
+  bool are_of_right_map() const;
 };
 RedundantKeyframes find_redundant_keyframes(const KeyframeGraph& graph, const OptimizedMap& map,
                                             const RobustOptions& options, int threads);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "localization_numbers.hpp"
 #include "shapemap/inference/map_search.hpp"
 
 namespace shapemap {
@@ -47,7 +48,7 @@ void RevisitTracker::start(const KeyframeGraph& graph, const OptimizedMap& map, 
 RevisitTracker::Followed RevisitTracker::follow(const KeyframeGraph& graph, const std::vector<LoopCandidate>& loops) {
   const std::size_t first = settled_.map_from_keyframe.size();
   const std::size_t count = graph.keyframes.size();
-  const std::size_t last = count - std::min(count, kKeyframesInUse);
+  const std::size_t last = count - std::min(count, kLocalization.redundancy.keyframes_in_use);
   Followed result;
   result.map = settled_;
   add_links(graph, result.map);

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "conflicting_loops.hpp"
+#include "loops_numbers.hpp"
 
 #include <algorithm>
 #include <map>
 
 namespace shapemap {
 namespace {
-
-/// Weaker rivals are of no account.
-constexpr double kLeastStrength = 1.0;
 
 using WorthOfNodes = std::map<std::size_t, double>;
 using WorthOfClusters = std::map<std::size_t, double>;
@@ -55,7 +53,7 @@ std::vector<std::vector<ConflictingLoop>> conflicting_loops(const std::vector<Lo
     }
     for (const auto& [other, worth] : strongest) {
       const double strength = std::min(worth, clusters[other].strength);
-      if (other != k && strength > kLeastStrength) rivals[k].push_back({other, strength});
+      if (other != k && strength > kLoops.conflicts.least_strength) rivals[k].push_back({other, strength});
     }
   }
   return rivals;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/loops/loop_clusters.hpp"
+#include "loops_numbers.hpp"
 
 #include <algorithm>
 #include <map>
@@ -8,11 +9,6 @@
 
 namespace shapemap {
 namespace {
-
-/// Two alignments of neighbouring scans share most of what they saw: a hypothesis more is not as good as an independent
-/// witness, and one that is by itself improbable still supports the others.
-constexpr double kOffset = 2.0;
-constexpr double kMostPerNode = 6.0;
 
 std::size_t apart(std::size_t i, std::size_t j) { return i < j ? j - i : i - j; }
 
@@ -62,8 +58,7 @@ class Clustering {
     }
     const Pose2 other_a_from_a = inverse(map_from_node_[other.a]) * map_from_node_[one.a];
     const Pose2 b_from_other_b = inverse(map_from_node_[one.b]) * map_from_node_[other.b];
-    const Pose2 off = inverse(other.a_from_b) * (other_a_from_a * one.a_from_b * b_from_other_b);
-    return is_within(off, options_.same_m, options_.same_rad);
+    return agrees(other.a_from_b, other_a_from_a * one.a_from_b * b_from_other_b, options_.same);
   }
 
   std::size_t root(std::size_t i) {
@@ -103,7 +98,11 @@ class Clustering {
 
 }  // namespace
 
-double worth_of_member(const LoopCandidate& member) { return std::clamp(member.log_odds + kOffset, 0.0, kMostPerNode); }
+double worth_among_others(double log_odds) {
+  return std::clamp(log_odds + kLoops.members.prior, 0.0, kLoops.members.most);
+}
+
+double worth_of_member(const LoopCandidate& member) { return worth_among_others(member.log_odds); }
 
 std::vector<LoopCluster> loop_clusters(const std::vector<LoopCandidate>& candidates,
                                        const std::vector<Pose2>& map_from_node,

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "graph/graph_numbers.hpp"
+#include "loops_numbers.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/core/parallel_for.hpp"
 #include "shapemap/loops/place_descriptor.hpp"
@@ -12,16 +14,6 @@
 
 namespace shapemap {
 namespace {
-
-/// Of each pair of scans, so many poses.
-constexpr std::size_t kPosesPerPair = 3;
-constexpr std::size_t kBridgePoses = 5;
-
-/// An alignment that is held worse than this does not tell where the place is: along a bare corridor, any will do.
-constexpr double kHeld_m = 0.2;
-
-/// Nodes on either side of a bridge.
-constexpr std::size_t kBridgeNodes = 4;
 
 /// Pairs that are worked on together, and between which the observer is asked. Part of no result.
 constexpr std::size_t kBlock = 64;
@@ -59,7 +51,7 @@ struct PairSearch {
 /// That the two scans are of one place, and that it is where the alignment says.
 double log_odds_of_place(double probability, const Eigen::Matrix3d& covariance) {
   const double p = std::clamp(probability, 1e-9, 1.0 - 1e-9);
-  return log_odds_of(p) - std::log(std::max(1.0, worst_deviation_m(covariance) / kHeld_m));
+  return log_odds_of(p) - std::log(std::max(1.0, worst_deviation_m(covariance) / kGraph.steps.held_m));
 }
 
 std::vector<LoopCandidate> aligned(const NodeViews& views, const Pair& pair, const PairSearch& search) {
@@ -113,7 +105,7 @@ std::vector<LoopCandidate> likely_loops(const NodeViews& views, std::size_t firs
   }
   const PairSearch quickly{quick(without_all_rotations(search.matching)),
                            SearchKind::kLoop,
-                           kPosesPerPair,
+                           kLoops.detection.poses_per_pair,
                            options.least_probability,
                            search.execution,
                            search.store};
@@ -127,15 +119,16 @@ std::vector<LoopCandidate> likely_loops(const NodeViews& views, std::size_t firs
 
 std::vector<LoopCandidate> cross_edge_matches(const NodeViews& views, const std::vector<std::size_t>& edges,
                                               const LoopSearch& search) {
+  const std::size_t nodes = kLoops.detection.cross_edge_nodes;
   std::vector<Pair> pairs;
   for (const std::size_t edge : edges) {
-    for (std::size_t a = edge + 1 - std::min(kBridgeNodes, edge + 1); a <= edge; ++a) {
-      for (std::size_t b = edge + 1; b < std::min(views.size(), edge + 1 + kBridgeNodes); ++b) pairs.push_back({a, b});
+    for (std::size_t a = edge + 1 - std::min(nodes, edge + 1); a <= edge; ++a) {
+      for (std::size_t b = edge + 1; b < std::min(views.size(), edge + 1 + nodes); ++b) pairs.push_back({a, b});
     }
   }
   const PairSearch thoroughly{without_all_rotations(search.matching),
                               SearchKind::kMultiReference,
-                              kBridgePoses,
+                              kLoops.detection.poses_per_cross_edge_pair,
                               0.0,
                               search.execution,
                               search.store};

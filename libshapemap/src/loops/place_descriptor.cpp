@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/loops/place_descriptor.hpp"
+#include "loops_numbers.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -7,10 +8,6 @@
 
 namespace shapemap {
 namespace {
-
-constexpr double kDistanceBin_m = 0.75;
-constexpr double kLeastDistance_m = 0.30;  // nearer points lie on the same surface
-constexpr std::size_t kMaxPoints = 150;
 
 /// Bins are centred about 0, 45, 90, ... degrees, where most of the angles in buildings are.
 std::size_t angle_bin(double angle_rad) {
@@ -22,14 +19,15 @@ std::size_t angle_bin(double angle_rad) {
 }  // namespace
 
 PlaceDescriptor place_descriptor(const ScanView& view) {
+  const DescriptorNumbers& numbers = kLoops.descriptor;
   PlaceDescriptor descriptor{};
-  const std::size_t stride = std::max<std::size_t>(1, view.size() / kMaxPoints);
+  const std::size_t stride = std::max<std::size_t>(1, view.size() / numbers.most_points);
   for (std::size_t i = 0; i < view.size(); i += stride) {
     for (std::size_t j = 0; j < view.size(); j += stride) {
       const Point2 between_m = view.points[j].p_m - view.points[i].p_m;
       const double distance_m = between_m.norm();
-      const auto distance_bin = static_cast<std::size_t>(distance_m / kDistanceBin_m);
-      if (distance_m < kLeastDistance_m || distance_bin >= kDescriptorDistances) continue;
+      const auto distance_bin = static_cast<std::size_t>(distance_m / numbers.distance_bin_m);
+      if (distance_m < numbers.least_distance_m || distance_bin >= kDescriptorDistances) continue;
       const double from_rad = view.points[i].tangent_rad;
       const std::size_t turn = angle_bin(view.points[j].tangent_rad - from_rad);
       const std::size_t side = angle_bin(std::atan2(between_m.y(), between_m.x()) - from_rad);

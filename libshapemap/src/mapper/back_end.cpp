@@ -9,7 +9,9 @@
 #include "inference/doubtful_edges.hpp"
 #include "inference/sweep_poses.hpp"
 #include "keyframe_culling.hpp"
+#include "localization/localization_numbers.hpp"
 #include "map_snapshot.hpp"
+#include "mapper_numbers.hpp"
 #include "motion_rescoring.hpp"
 #include "three_scan_scores.hpp"
 #include "trajectory_builder.hpp"
@@ -19,15 +21,7 @@ namespace {
 
 constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
 
-/// Each time so many scans have come it is looked at whether enough is new.
-constexpr std::size_t kScansBetweenUpdates = 32;
-
-/// So many new keyframes are followed in the map at a time.
-constexpr std::size_t kFollowedAtOnce = 64;
-
-/// The first preview of the map has so many keyframes, and each later one half as many again: all together cost a few
-/// times as much as the last.
-constexpr std::size_t kFirstPreview = 8;
+/// Each preview of the map has half as many keyframes again: all together cost a few times as much as the last.
 std::size_t preview_after(std::size_t num_keyframes) { return num_keyframes + (num_keyframes + 1) / 2; }
 
 /// After an interrupt nothing more is looked for; what came until then is still made one map.
@@ -79,17 +73,19 @@ void tell_verified(const KeyframeGraph& graph, MappingEvents& events) {
 
 BackEnd::BackEnd(BackEndContext context) : context_(std::move(context)), revisits_(context_.options.robust) {
   const KeyframeOptions& keyframes = context_.options.robust.keyframes;
-  cull_at_ = std::max(static_cast<std::size_t>(keyframes.settle_at), 4 * kKeyframesInUse);
+  cull_at_ = std::max(static_cast<std::size_t>(keyframes.settle_at), 4 * kLocalization.redundancy.keyframes_in_use);
   next_optimization_ = closes_loops() && keyframes.settle_at > 0 ? cull_at_ : kNever;
   // Without loops, what is no longer needed is let go now and then.
   next_update_ = closes_loops() ? next_optimization_ : cull_at_;
-  next_preview_ = closes_loops() && context_.publish ? kFirstPreview : kNever;
+  next_preview_ = closes_loops() && context_.publish ? kMapper.updates.first_preview : kNever;
   if (next_preview_ != kNever) preview_cache_.emplace(context_.cache);
 }
 
 void BackEnd::add(TrackedScan scan) {
   const std::size_t num_scans = result_.scans.size();
-  if (num_scans > 0 && num_scans % kScansBetweenUpdates == 0 && graph_.keyframes.size() >= next_update_) update();
+  if (num_scans > 0 && num_scans % kMapper.updates.scans_between_updates == 0 &&
+      graph_.keyframes.size() >= next_update_)
+    update();
   ScanResult outcome;
   outcome.scan_index = scan.scan_index;
   outcome.timestamp_s = scan.timestamp_s;
@@ -127,7 +123,7 @@ void BackEnd::update() {
   } else {
     next_optimization_ = graph_.keyframes.size() + cull_at_ / 2;
   }
-  next_update_ = std::min(next_optimization_, graph_.keyframes.size() + kFollowedAtOnce);
+  next_update_ = std::min(next_optimization_, graph_.keyframes.size() + kMapper.updates.followed_at_once);
   result_.times.loops_s += watch.seconds();
   context_.events.on_stage("chain");
 }
@@ -161,7 +157,7 @@ void BackEnd::let_views_go() {
 /// more loops tell.
 bool BackEnd::optimize_and_cull() {
   const RobustOptions& options = context_.options.robust;
-  const std::size_t num_settled = graph_.keyframes.size() - kKeyframesInUse;
+  const std::size_t num_settled = graph_.keyframes.size() - kLocalization.redundancy.keyframes_in_use;
   find_loops(graph_, num_settled, loop_search(execution()), loops_);
   if (!context_.events.keep_going()) return false;
   OptimizedMap map = optimized_map(graph_, loops_.candidates, Improbable::kIsCut, options, execution());
@@ -174,7 +170,7 @@ bool BackEnd::optimize_and_cull() {
     if (redundant.is_in_doubt[b]) map.component[b] = b;  // the robot is not to be followed there
   }
   cull(redundant.of_keyframe, map);
-  revisits_.start(graph_, map, graph_.keyframes.size() - kKeyframesInUse);
+  revisits_.start(graph_, map, graph_.keyframes.size() - kLocalization.redundancy.keyframes_in_use);
   tell_localization();
   return true;
 }
@@ -182,7 +178,8 @@ bool BackEnd::optimize_and_cull() {
 /// Puts the new keyframes where the map knows their places.
 void BackEnd::follow() {
   if (revisits_.is_lost()) {
-    find_loops(graph_, graph_.keyframes.size() - kKeyframesInUse, loop_search(execution()), loops_);
+    find_loops(graph_, graph_.keyframes.size() - kLocalization.redundancy.keyframes_in_use, loop_search(execution()),
+               loops_);
     if (!context_.events.keep_going()) return;
   }
   RevisitTracker::Followed followed = revisits_.follow(graph_, loops_.candidates);

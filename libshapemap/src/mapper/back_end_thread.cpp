@@ -3,13 +3,9 @@
 
 #include <utility>
 
+#include "mapper_numbers.hpp"
+
 namespace shapemap {
-namespace {
-
-/// A recording at 40 scans a second waits for minutes before this many do.
-constexpr std::size_t kMostWaiting = 10000;
-
-}  // namespace
 
 BackEndThread::BackEndThread(BackEndContext context, BackgroundEvents& events)
     : events_(events), back_end_(std::move(context)) {
@@ -23,7 +19,7 @@ BackEndThread::~BackEndThread() {
 
 void BackEndThread::add(TrackedScan scan) {
   std::unique_lock<std::mutex> lock(mutex_);
-  changed_.wait(lock, [this] { return waiting_.size() < kMostWaiting || failure_; });
+  changed_.wait(lock, [this] { return waiting_.size() < kMapper.updates.most_waiting || failure_; });
   if (failure_) std::rethrow_exception(failure_);
   waiting_.push_back(std::move(scan));
   lock.unlock();

@@ -6,14 +6,12 @@
 #include <limits>
 #include <numeric>
 
+#include "mapper_numbers.hpp"
 #include "shapemap/core/parallel_for.hpp"
 #include "shapemap/matching/match_probability.hpp"
 
 namespace shapemap {
 namespace {
-
-/// So many candidates of each keyframe further back are asked.
-constexpr std::size_t kMultiReference = 2;
 
 bool more_likely(const MatchCandidate& a, const MatchCandidate& b) { return a.score > b.score; }
 
@@ -170,7 +168,7 @@ std::vector<MatchCandidate> FrontEnd::multi_reference_candidates(std::size_t rec
     if (!recent_[far].best_own) break;
     far_from_reference = *recent_[far].best_own * far_from_reference;
     const std::vector<MatchCandidate> from_far = matched(far - 1, recent, SearchKind::kMultiReference, quick);
-    for (std::size_t k = 0; k < std::min(kMultiReference, from_far.size()); ++k) {
+    for (std::size_t k = 0; k < std::min(kMapper.tracking.multi_reference_candidates, from_far.size()); ++k) {
       const Pose2 ref_from_query = inverse(far_from_reference) * from_far[k].ref_from_query;
       if (ref_from_query.translation().lpNorm<Eigen::Infinity>() > limit_m) continue;
       found.push_back(refined_candidate(reference, query, ref_from_query, options_.robust.matcher.search));

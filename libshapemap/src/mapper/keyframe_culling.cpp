@@ -6,14 +6,13 @@
 #include <set>
 #include <utility>
 
+#include "localization/localization_numbers.hpp"
+#include "mapper_numbers.hpp"
 #include "shapemap/graph/relative_covariance.hpp"
 #include "shapemap/inference/map_search.hpp"
 
 namespace shapemap {
 namespace {
-
-/// What a settled map says of two of its keyframes, as logarithm of odds.
-constexpr double kSettledLogOdds = 4.6;
 
 Pose2 between(const OptimizedMap& map, std::size_t a, std::size_t b) {
   return inverse(map.map_from_keyframe[a]) * map.map_from_keyframe[b];
@@ -53,17 +52,18 @@ class KeyframeCulling {
       candidates.push_back(loop);
       candidates.back().a = number_[loop.a];
       candidates.back().b = number_[loop.b];
-      if (is_within(inverse(loop.a_from_b) * between(map_, loop.a, loop.b), kAsInMap_m, kAsInMap_rad)) {
+      if (agrees(loop.a_from_b, between(map_, loop.a, loop.b), kLocalization.redundancy.as_in_map)) {
         pairs.insert({candidates.back().a, candidates.back().b});
       }
     }
     for (const PoseConstraint& constraint : map_.constraints) {
       const Pose2 as_in_map = between(map_, constraint.a, constraint.b);
-      if (!is_within(inverse(constraint.a_from_b) * as_in_map, kAsInMap_m, kAsInMap_rad)) continue;
+      if (!agrees(constraint.a_from_b, as_in_map, kLocalization.redundancy.as_in_map)) continue;
       const auto [a, b] = std::minmax({kept_for(constraint.a), kept_for(constraint.b)});
       if (number_[b] - number_[a] < static_cast<std::size_t>(options_.robust.loop_detection.shortest_loop)) continue;
       if (!pairs.insert({number_[a], number_[b]}).second) continue;
-      candidates.push_back({number_[a], number_[b], between(map_, a, b), constraint.covariance, kSettledLogOdds});
+      candidates.push_back(
+          {number_[a], number_[b], between(map_, a, b), constraint.covariance, kMapper.updates.settled_log_odds});
     }
     known_.candidates = std::move(candidates);
     known_.num_searched = number_of_kept_before(known_.num_searched);

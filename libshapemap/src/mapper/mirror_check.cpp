@@ -5,34 +5,25 @@
 #include <cmath>
 #include <optional>
 
+#include "mapper_numbers.hpp"
 #include "shapemap/core/angles.hpp"
 #include "shapemap/scan/joined_logs.hpp"
 
 namespace shapemap {
-namespace {
-
-constexpr double kLeastTurn_rad = 5 * kDegree;
-
-/// Turns by more than this are not certain to be no turns the other way.
-constexpr double kMostTurn_rad = 150 * kDegree;
-
-constexpr double kByChance = 0.5;
-constexpr double kLogError = -13.8;  // 1e-6
-
-}  // namespace
-
 bool TurnComparison::is_mirrored() const {
+  const MirrorNumbers& numbers = kMapper.mirror;
   // The number of opposite turns is binomial; by Chernoff's bound, so many or more have at most this probability.
   const auto count = static_cast<double>(num_alike + num_opposite);
   if (count == 0.0) return false;
   const double share = static_cast<double>(num_opposite) / count;
-  if (share <= kByChance) return false;
-  double divergence = share * std::log(share / kByChance);
-  if (share < 1.0) divergence += (1.0 - share) * std::log((1.0 - share) / (1.0 - kByChance));
-  return -count * divergence < kLogError;
+  if (share <= numbers.by_chance) return false;
+  double divergence = share * std::log(share / numbers.by_chance);
+  if (share < 1.0) divergence += (1.0 - share) * std::log((1.0 - share) / (1.0 - numbers.by_chance));
+  return -count * divergence < numbers.log_error;
 }
 
 TurnComparison compare_turns(const Log& log, const std::vector<PlacedScan>& placed) {
+  const MirrorNumbers& numbers = kMapper.mirror;
   TurnComparison turns;
   const PlacedScan* since = nullptr;  // turns are looked at as soon as they are large enough
   for (const PlacedScan& here : placed) {
@@ -46,9 +37,9 @@ TurnComparison compare_turns(const Log& log, const std::vector<PlacedScan>& plac
     const double mapped_rad = wrap_angle(here.map_from_robot.theta_rad - since->map_from_robot.theta_rad);
     const double smaller_rad = std::min(std::abs(recorded_rad), std::abs(mapped_rad));
     const double larger_rad = std::max(std::abs(recorded_rad), std::abs(mapped_rad));
-    if (larger_rad < kLeastTurn_rad) continue;
+    if (larger_rad < numbers.least_turn_rad) continue;
     since = &here;
-    if (smaller_rad < 0.5 * kLeastTurn_rad || larger_rad > kMostTurn_rad) continue;
+    if (smaller_rad < 0.5 * numbers.least_turn_rad || larger_rad > numbers.most_turn_rad) continue;
     ++((recorded_rad > 0.0) == (mapped_rad > 0.0) ? turns.num_alike : turns.num_opposite);
   }
   return turns;

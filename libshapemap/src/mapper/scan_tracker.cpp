@@ -4,27 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapper_numbers.hpp"
 #include "shapemap/matching/match_probability.hpp"
 #include "shapemap/matching/pair_evidence.hpp"
 
 namespace shapemap {
-namespace {
-
-/// A scan that is followed without a search moves so little from the one before.
-constexpr double kLongestStep_m = 0.20;
-constexpr double kLargestTurn_rad = 10 * kDegree;
-constexpr double kSure = 0.95;
-
-/// A sensor that stands does not tell how it moves.
-constexpr double kStands_m = 0.01;
-constexpr double kStands_rad = 0.5 * kDegree;
-
-/// A search at each scan pays only where scans follow each other closely.
-constexpr double kDense = 0.5;
-constexpr double kMemory = 0.97;
-
-}  // namespace
-
 void ScanTracker::start(std::shared_ptr<const ScanView> keyframe) {
   keyframe_ = std::move(keyframe);
   if (!keyframe_) {
@@ -33,30 +17,30 @@ void ScanTracker::start(std::shared_ptr<const ScanView> keyframe) {
     attached_ = 0.0;
   }
   last_ = {};
-  attached_ *= kMemory;
+  attached_ *= kMapper.tracking.memory;
 }
 
 std::optional<MatchCandidate> ScanTracker::follow(const ScanView& view) {
   expected_.reset();
   if (!keyframe_ || options_.keyframes.step_m <= 0.0) return std::nullopt;
-  if (attached_ > kDense) expected_ = step_ ? expectation_.at(last_ * *step_) : ExpectedPose{last_};
+  if (attached_ > kMapper.tracking.dense) expected_ = step_ ? expectation_.at(last_ * *step_) : ExpectedPose{last_};
   std::optional<MatchCandidate> pose = followed(view);
-  if (!pose && attached_ > kDense) pose = searched(view);
+  if (!pose && attached_ > kMapper.tracking.dense) pose = searched(view);
   if (!pose) {
     forget_motion();
     return std::nullopt;
   }
   go_on_by(inverse(last_) * pose->ref_from_query);
-  if (!is_within(pose->ref_from_query, options_.keyframes.step_m, options_.keyframes.turn_rad)) return std::nullopt;
+  if (!is_within(pose->ref_from_query, options_.keyframes.near())) return std::nullopt;
   last_ = pose->ref_from_query;
-  attached_ = 1.0 - kMemory * (1.0 - attached_);
+  attached_ = 1.0 - kMapper.tracking.memory * (1.0 - attached_);
   return pose;
 }
 
 /// After a jump, as where scans were lost, the motion may be any.
 void ScanTracker::go_on_by(const Pose2& step) {
-  if (!is_within(step, kLongestStep_m, kLargestTurn_rad)) return forget_motion();
-  if (step_ && !is_within(step, kStands_m, kStands_rad)) expectation_.learn(inverse(*step_) * step);
+  if (!is_within(step, kMapper.tracking.longest_step)) return forget_motion();
+  if (step_ && !is_within(step, kMapper.tracking.stands)) expectation_.learn(inverse(*step_) * step);
   step_ = step;
 }
 
@@ -68,13 +52,15 @@ std::optional<MatchCandidate> ScanTracker::followed(const ScanView& view) const 
     if (onward.score > best.score) best = std::move(onward);
   }
   const Pose2 step = inverse(last_) * best.ref_from_query;
-  if (!shows_the_same(best) || !is_within(step, kLongestStep_m, kLargestTurn_rad)) return std::nullopt;
+  if (!shows_the_same(best) || !is_within(step, kMapper.tracking.longest_step)) return std::nullopt;
   return best;
 }
 
 std::optional<MatchCandidate> ScanTracker::searched(const ScanView& view) const {
   const std::vector<MatchCandidate> poses = find_candidates(*keyframe_, view, options_.matcher.search);
-  if (poses.empty() || match_probability(poses.front(), lead_of_first(poses)) < kSure) return std::nullopt;
+  if (poses.empty()) return std::nullopt;
+  const double probability = match_probability(poses.front(), lead_of_first(poses));
+  if (probability < options_.matcher.confidence.sure_probability) return std::nullopt;
   return poses.front();
 }
 

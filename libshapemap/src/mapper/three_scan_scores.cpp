@@ -4,18 +4,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "inference/inference_numbers.hpp"
+#include "mapper_numbers.hpp"
 #include "shapemap/core/parallel_for.hpp"
 
 namespace shapemap {
 namespace {
 
-/// Two steps in a row place a scan less exactly than one does: distances are taken this much wider.
-constexpr double kThreeScanSlack = 1.3;
-
 /// How well a pose goes with a scan that it was not made from. Little overlap says little either way.
 double three_scan_score(const Visibility& v) {
   const double total = std::max(v.total(), 1e-9);
-  return 3.0 * std::log(0.2 + v.agree / total) - 1.5 * std::log(0.1 + v.crossed / total);
+  const ThreeScanWeights& weights = kMapper.three_scans;
+  return weights.agree * std::log(weights.agree_offset + v.agree / total) +
+         weights.crossed * std::log(weights.crossed_offset + v.crossed / total);
 }
 
 std::vector<std::vector<double>> three_scan_scores(const KeyframeGraph& graph, std::size_t first,
@@ -27,7 +28,7 @@ std::vector<std::vector<double>> three_scan_scores(const KeyframeGraph& graph, s
     for (std::size_t j = 0; j < b_to_c.candidates.size(); ++j) {
       const Pose2 a_from_c = a_to_b.candidates[i].ref_from_query * b_to_c.candidates[j].ref_from_query;
       const Visibility seen = visibility(*graph.keyframes[first].view, *graph.keyframes[first + 2].view, a_from_c,
-                                         options.matcher.search.visibility, kThreeScanSlack);
+                                         options.matcher.search.visibility, kInference.agreement.odometry_slack);
       scores[i][j] = options.front_end.three_scan_weight * three_scan_score(seen);
     }
   }

@@ -4,31 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "matching_numbers.hpp"
 #include "shapemap/matching/lcs_hypotheses.hpp"
 #include "shapemap/matching/rotation_hypotheses.hpp"
 
 namespace shapemap {
 namespace {
 
-/// Poses closer than this are one and the same after refinement.
-constexpr double kSamePlace_m = 0.20;
-constexpr double kSameHeading_rad = 5 * kDegree;
-
-/// Before refinement, poses are off by up to a cell of the votes: distances are taken this much wider.
-constexpr double kCoarseSlack = 2.0;
-constexpr std::size_t kCoarseStride = 2;
-
-constexpr double kScorePerResidual_m = 56.0;
-
-/// Where the usual is looked for, so many times as many poses are put up and refined.
-constexpr int kMoreUsual = 2;
-
 bool better(const MatchCandidate& a, const MatchCandidate& b) { return a.score > b.score; }
-
-bool same_place(const Pose2& a, const Pose2& b) {
-  return (a.translation() - b.translation()).norm() < kSamePlace_m &&
-         angle_between(a.theta_rad, b.theta_rad) < kSameHeading_rad;
-}
 
 MatchCandidate judged_fit(const ScanView& reference, const ScanView& query, const LineFit& fit,
                           const MatchSearchOptions& options) {
@@ -36,7 +19,7 @@ MatchCandidate judged_fit(const ScanView& reference, const ScanView& query, cons
   pose.fit = fit;
   pose.ref_from_query = fit.ref_from_query;
   pose.visibility = visibility(reference, query, pose.ref_from_query, options.visibility);
-  pose.score = visibility_score(pose.visibility) - kScorePerResidual_m * pose.fit.rms_m;
+  pose.score = visibility_score(pose.visibility) + kMatching.score.residual_per_m * pose.fit.rms_m;
   return pose;
 }
 
@@ -81,8 +64,9 @@ class Search {
   MatchCandidate judged(const Point2& shift_m, double rotation_rad) const {
     MatchCandidate pose;
     pose.ref_from_query = {shift_m.x(), shift_m.y(), rotation_rad};
-    pose.score = visibility_score(
-        visibility(reference_, query_, pose.ref_from_query, options_.visibility, kCoarseSlack, kCoarseStride));
+    const CandidateNumbers& numbers = kMatching.candidates;
+    pose.score = visibility_score(visibility(reference_, query_, pose.ref_from_query, options_.visibility,
+                                             numbers.coarse_slack, numbers.coarse_stride));
     pose.score -= prior_.surprise(pose.ref_from_query);
     return pose;
   }
@@ -115,8 +99,8 @@ std::vector<MatchCandidate> find_candidates(const ScanView& reference, const Sca
                    options.voting.peaks, options.candidates.shape_segments);
   if (!found.empty() && found.front().score >= options.candidates.all_rotations_below) return found;
   // Few lines, or little in common: tangents alone do not tell the rotation.
-  std::vector<MatchCandidate> more =
-      search.among(all_rotations(options.candidates.all_rotations_step_rad), std::max(1, options.voting.peaks / 4), 0);
+  const int peaks = std::max(1, options.voting.peaks / kMatching.candidates.all_rotations_fewer_peaks);
+  std::vector<MatchCandidate> more = search.among(all_rotations(options.candidates.all_rotations_step_rad), peaks, 0);
   more.insert(more.end(), found.begin(), found.end());
   return best_distinct(std::move(more), options.candidates.kept);
 }
@@ -125,7 +109,7 @@ std::vector<MatchCandidate> find_usual_candidates(const ScanView& reference, con
                                                   const MatchSearchOptions& options, const MotionPrior& prior) {
   MatchSearchOptions thorough = options;
   for (int* effort : {&thorough.candidates.rotation_peaks, &thorough.candidates.refined, &thorough.voting.peaks}) {
-    *effort *= kMoreUsual;
+    *effort *= kMatching.candidates.usual_effort;
   }
   const Search search(reference, query, thorough, prior);
   return search.among(rotation_hypotheses(reference.tangents, query.tangents, thorough.candidates.rotation_peaks),
@@ -154,7 +138,7 @@ std::vector<MatchCandidate> best_distinct(std::vector<MatchCandidate> candidates
 
 void add_if_new(const MatchCandidate& pose, std::vector<MatchCandidate>& distinct) {
   const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const MatchCandidate& other) {
-    return same_place(other.ref_from_query, pose.ref_from_query);
+    return agrees(other.ref_from_query, pose.ref_from_query, kMatching.candidates.same_place);
   });
   if (!known) distinct.push_back(pose);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/matching/point_to_line.hpp"
+#include "matching_numbers.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -9,16 +10,6 @@
 
 namespace shapemap {
 namespace {
-
-/// Steps below these change nothing that matters.
-constexpr double kStill_m = 1e-3;
-constexpr double kStill_rad = 1e-3;
-
-/// Partners farther apart than this share of the gate count less and less.
-constexpr double kTrustedShareOfGate = 0.3;
-
-/// Fewer hold no pose.
-constexpr int kLeastPartners = 3;
 
 /// Normal equations of one iteration.
 struct LineSystem {
@@ -60,7 +51,7 @@ LineSystem line_system(Partners& partners, const ScanView& reference, const Scan
                        const Pose2& ref_from_query, double gate_m, double cos_gate) {
   LineSystem system;
   const Turn turn(ref_from_query.theta_rad);
-  const double trusted_m = kTrustedShareOfGate * gate_m;
+  const double trusted_m = kMatching.line_fit.trusted_share_of_gate * gate_m;
   for (std::size_t i = 0; i < query.size(); ++i) {
     const Point2 turned_m = turn * query.points[i].p_m;
     const Point2 p_m = turned_m + ref_from_query.translation();
@@ -83,9 +74,10 @@ LineSystem line_system(Partners& partners, const ScanView& reference, const Scan
 }
 
 void note_fit(const LineSystem& system, LineFit& fit) {
+  const LineFitNumbers& numbers = kMatching.line_fit;
   fit.information = system.a;
   fit.partners = system.partners;
-  if (fit.partners < kLeastPartners) return;
+  if (fit.partners < numbers.least_partners) return;
   fit.rms_m = std::sqrt(system.squares_m2 / fit.partners);
   fit.lever_m = std::sqrt(system.lever_squares_m2 / fit.partners);
 }
@@ -94,6 +86,7 @@ void note_fit(const LineSystem& system, LineFit& fit) {
 
 LineFit fit_to_lines(const ScanView& reference, const ScanView& query, const Pose2& start,
                      const PointToLineOptions& options) {
+  const LineFitNumbers& numbers = kMatching.line_fit;
   LineFit fit;
   fit.ref_from_query = start;
   Partners partners(reference, query.size());
@@ -102,16 +95,17 @@ LineFit fit_to_lines(const ScanView& reference, const ScanView& query, const Pos
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     const LineSystem system = line_system(partners, reference, query, fit.ref_from_query, gate_m, cos_gate);
     note_fit(system, fit);
-    if (fit.partners < kLeastPartners) break;
+    if (fit.partners < numbers.least_partners) break;
 
     const Eigen::Matrix3d held = options.stiffness * fit.partners * Eigen::Matrix3d::Identity();
     const Eigen::Vector3d step = (system.a + held + 1e-6 * Eigen::Matrix3d::Identity()).ldlt().solve(system.b);
     fit.ref_from_query.x_m += step.x();
     fit.ref_from_query.y_m += step.y();
     fit.ref_from_query.theta_rad = wrap_angle(fit.ref_from_query.theta_rad + step.z());
-    const bool still = step.head<2>().norm() < kStill_m && std::abs(step.z()) < kStill_rad;
+    const bool still = is_within({step.x(), step.y(), step.z()}, numbers.still);
     if (still && gate_m <= options.last_gate_m) break;
-    gate_m = std::max(options.last_gate_m, (still ? 0.5 : 0.8) * gate_m);
+    const double shrinks = still ? numbers.gate_shrinks_when_still : numbers.gate_shrinks;
+    gate_m = std::max(options.last_gate_m, shrinks * gate_m);
   }
   return fit;
 }

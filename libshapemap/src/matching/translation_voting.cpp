@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/matching/translation_voting.hpp"
+#include "matching_numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,20 +9,15 @@
 namespace shapemap {
 namespace {
 
-/// Most of what two scans share is nearer than they see: farther motions leave little to compare.
-constexpr double kShiftByReach = 0.75;
-constexpr double kLeastShift_m = 2.0;
-constexpr double kMostShift_m = 8.0;
-
-constexpr std::size_t kCellsAPeak = 9;
-
 double in_turn(double angle_rad) { return angle_rad - 2.0 * kPi * std::floor(angle_rad / (2.0 * kPi)); }
 
 }  // namespace
 
 double max_shift_m(const ScanView& reference, const ScanView& query, const VotingOptions& options) {
   if (options.max_shift_m > 0.0) return options.max_shift_m;
-  return std::clamp(kShiftByReach * std::max(reference.reach_m, query.reach_m), kLeastShift_m, kMostShift_m);
+  const VotingNumbers& numbers = kMatching.voting;
+  return std::clamp(numbers.shift_by_reach * std::max(reference.reach_m, query.reach_m), numbers.least_shift_m,
+                    numbers.most_shift_m);
 }
 
 TranslationVoting::TranslationVoting(const ScanView& reference, double max_shift_m, const VotingOptions& options)
@@ -49,7 +45,7 @@ std::vector<Point2> TranslationVoting::peaks(const ScanView& query, double rotat
   const auto more_votes = [&](std::size_t a, std::size_t b) {
     return votes[a] > votes[b] || (votes[a] == votes[b] && a < b);
   };
-  const std::size_t num_sorted = std::min(cells.size(), kCellsAPeak * count);
+  const std::size_t num_sorted = std::min(cells.size(), kMatching.voting.cells_per_peak * count);
   std::partial_sort(cells.begin(), cells.begin() + static_cast<std::ptrdiff_t>(num_sorted), cells.end(), more_votes);
   cells.resize(num_sorted);
 

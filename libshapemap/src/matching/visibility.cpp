@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "beam_lookup.hpp"
+#include "matching_numbers.hpp"
 
 namespace shapemap {
 namespace {
@@ -64,7 +65,7 @@ Seen look_along_beam(const RangeImage::Beam& beam, const SeenPoint& point, doubl
   if (beam.range_m <= 0.0) return Seen::kUnclear;
   const Point2 off_m = point.p_m - beam.hit_m;
   const double before_m = off_m.dot(beam.normal);
-  const double reach_m = limits.agree_m + 1.5 * beam.footprint_m;
+  const double reach_m = limits.agree_m + kMatching.visibility.footprints * beam.footprint_m;
   if (std::abs(before_m) < limits.agree_m && off_m.squaredNorm() < reach_m * reach_m) {
     const Point2 tangent(beam.normal.y(), -beam.normal.x());  // the normal is to the left of it
     return tangent.dot(point.direction) > limits.cos_tangent ? Seen::kAgree : Seen::kUnclear;
@@ -154,11 +155,14 @@ Visibility visibility(const ScanView& reference, const ScanView& query, const Po
 }
 
 double visibility_score(const Visibility& v) {
-  constexpr double kNothing = 1e-9;
-  const double agree = (v.agree + 0.25 * v.unclear) / (v.total() + kNothing);
-  const double cross_agree = v.cross_agree / (v.cross_total + kNothing);
-  const double crossed = v.crossed / (v.total() + kNothing);
-  return 6.5 * std::log(0.05 + agree) + 1.0 * std::log(0.05 + cross_agree) - 2.7 * std::log(0.02 + crossed);
+  const double nothing = 1e-9;  // there is something to divide by
+  const ScoreWeights& weights = kMatching.score;
+  const double agree = (v.agree + weights.unclear_share * v.unclear) / (v.total() + nothing);
+  const double cross_agree = v.cross_agree / (v.cross_total + nothing);
+  const double crossed = v.crossed / (v.total() + nothing);
+  return weights.agree * std::log(weights.agree_offset + agree) +
+         weights.cross_agree * std::log(weights.cross_agree_offset + cross_agree) +
+         weights.crossed * std::log(weights.crossed_offset + crossed);
 }
 
 }  // namespace shapemap

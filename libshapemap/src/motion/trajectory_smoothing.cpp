@@ -18,7 +18,7 @@ constexpr double kUsualOff_rad = 5 * kDegree;
 
 bool follows_closely(const TrackedPose& before, const TrackedPose& after) {
   return after.scan_index == before.scan_index + 1 && after.session == before.session &&
-         is_within(inverse(before.map_from_robot) * after.map_from_robot, kLongestStep_m, kLargestTurn_rad);
+         is_within(inverse(before.map_from_robot) * after.map_from_robot, {kLongestStep_m, kLargestTurn_rad});
 }
 
 Pose2 drawn_to_middle(const Pose2& before, const Pose2& pose, const Pose2& after, const Eigen::Matrix3d& covariance) {

@@ -31,6 +31,7 @@ COMMANDS = {
     "fit": {
         "fit-scores": "the score of a pose and the probability of an alignment, to real logs",
         "fit-edges": "how probable edges between consecutive keyframes are",
+        "numbers": "all fitted weights and tolerances in tables, with what they were fitted to",
     },
     "simulate": {
         "simulate": "a rescue robot's laser log in a maze-like arena, with exact poses",

@@ -2,8 +2,9 @@
 """Fit how probable a link between consecutive keyframes is: one that no loop holds by its two scans, and one in doubt
 by all scans of both sides. Links come from variants of real logs, from simulated arenas and from hard scenes; how
 probable the mapper says they are is held against the truth: on logs that nothing was fitted to, a test of it. What is
-fitted belongs into probability_of_neighbours() and link_revision.cpp; what a parallel link says was made with the
-weights in use, so that a fit of its weight is one step towards the best."""
+fitted is printed beside the weights in use, as `shapemap-cli numbers` tells them, and belongs into
+matching_numbers.hpp, graph_numbers.hpp and objective_numbers.hpp; what a parallel link says was made with the weights
+in use, so that a fit of its weight is one step towards the best."""
 
 from __future__ import annotations
 
@@ -18,10 +19,10 @@ from evaluation.common.argument_types import name_list
 from evaluation.common.command_line import add_jobs, add_seeds, complain
 from evaluation.common.files import write_json
 from evaluation.common.parallel import run_all
+from evaluation.common.programs import Failure
 from evaluation.fitting.edge_fits import (
-    NEIGHBOURS,
-    REVISION,
     REVISION_TERMS,
+    EdgeNumbers,
     calibration_table,
     fitted_neighbours,
     fitted_revision,
@@ -30,6 +31,7 @@ from evaluation.fitting.edge_fits import (
 from evaluation.fitting.known_edges import Links, links_of_arena, links_of_scene, links_of_variant
 from evaluation.logs.datasets import DatasetError
 from evaluation.logs.selection import parser_for_logs, selected_variants
+from evaluation.mapping.numbers import numbers_of
 from evaluation.mapping.options import add_mapper_arguments, mapper_from
 
 EXAMPLE = """example, what the weights were fitted to, and what they were tried on:
@@ -46,30 +48,31 @@ SCENES_WITH_LINKS = (  # right or wrong, and not hidden by people
 ).split(",")
 
 
-def report_on(links: list[Links], shortfall_alone: bool) -> str:
-    of_lone, of_revised = ([2], [5]) if shortfall_alone else (range(len(NEIGHBOURS)), range(len(REVISION)))
+def report_on(links: list[Links], shortfall_alone: bool, numbers: EdgeNumbers) -> str:
+    neighbours, revision = numbers.neighbours, numbers.revision
+    of_lone, of_revised = ([2], [5]) if shortfall_alone else (range(len(neighbours)), range(len(revision)))
     lone = np.array([link for one in links for link in one.lone], float).reshape(-1, 3)
     stated = np.array([link for one in links for link in one.stated], float).reshape(-1, 2)
     revised = [link for one in links for link in one.revised]
     parts = []
     if len(lone):
         right = lone[:, 2] > 0
-        found = fitted_neighbours(lone[:, 0], lone[:, 1], right, of_lone)
+        found = fitted_neighbours(lone[:, 0], lone[:, 1], right, neighbours, of_lone)
         parts.append(f"{len(lone)} lone links, by their two scans:\n\n{calibration_table(lone[:, 0], right)}")
         parts.append(
             f"log odds: {found[0]:.2f} + {found[1]:.2f} of match_probability() {found[2]:+.1f} of the view shortfall "
-            f"(in use: {NEIGHBOURS[0]:g} + {NEIGHBOURS[1]:g} {NEIGHBOURS[2]:+g})"
+            f"(in use: {neighbours[0]:g} + {neighbours[1]:g} {neighbours[2]:+g})"
         )
     if revised:
-        weights = fitted_revision(revised, of_revised)
+        weights = fitted_revision(revised, revision, of_revised)
         table = calibration_table(stated[:, 0], stated[:, 1] > 0)
         parts.append(f"{len(revised)} links in doubt, by all scans of both sides:\n\n{table}")
         rows = [
             f"  {weight:6.2f} ({used:g}) {term}"
-            for weight, used, term in zip(weights, REVISION, REVISION_TERMS, strict=True)
+            for weight, used, term in zip(weights, revision, REVISION_TERMS, strict=True)
         ]
         parts.append("\n".join(["weights (in use):", *rows]))
-        likelihoods = [mean_log_likelihood(revised, w) for w in (weights, REVISION)]
+        likelihoods = [mean_log_likelihood(revised, w) for w in (weights, revision)]
         parts.append(f"mean log likelihood {likelihoods[0]:.4f} ({likelihoods[1]:.4f})")
     return "\n\n".join(parts)
 
@@ -101,12 +104,17 @@ def main(argv: list[str] | None = None) -> int:
         complain(__name__, str(error))
         return 3
     mapper = mapper_from(arguments)
+    try:
+        numbers = EdgeNumbers.of(numbers_of(mapper.cli))
+    except Failure as failure:
+        complain(__name__, str(failure))
+        return 1
     scenes = product(SCENES_WITH_LINKS, arguments.scene_seeds)
-    calls: list[tuple[Any, ...]] = [(links_of_variant, log, mapper) for log in wanted]
-    calls += [(links_of_arena, seed, mapper) for seed in arguments.seeds]
-    calls += [(links_of_scene, name, seed, mapper) for name, seed in scenes]
+    calls: list[tuple[Any, ...]] = [(links_of_variant, log, mapper, numbers) for log in wanted]
+    calls += [(links_of_arena, seed, mapper, numbers) for seed in arguments.seeds]
+    calls += [(links_of_scene, name, seed, mapper, numbers) for name, seed in scenes]
     links = run_all(called, calls, arguments.jobs)
-    print(report_on(links, arguments.shortfall_alone))
+    print(report_on(links, arguments.shortfall_alone, numbers))
     faults = [one.fault for one in links if one.fault]
     for fault in faults:
         complain(__name__, fault)

@@ -22,7 +22,7 @@ from evaluation.simulation.arena_options import hard_arena
 from evaluation.simulation.simulation import Simulation, simulate
 from evaluation.simulation.write import nist_text
 
-from .edge_fits import Candidates, is_place, slides_to
+from .edge_fits import Candidates, EdgeNumbers, is_place, slides_to
 
 ALL_STAY = ("--verify-below", "0", "--split-below", "0")
 
@@ -47,7 +47,7 @@ def view_shortfalls(trace: Path) -> dict[tuple[int, int], float]:
 
 
 def lone_links(
-    report: Mapping[str, Any], shortfall: Mapping[tuple[int, int], float], truth: Array
+    report: Mapping[str, Any], shortfall: Mapping[tuple[int, int], float], truth: Array, numbers: EdgeNumbers
 ) -> list[tuple[float, float, bool]]:
     links = []
     for position in report["scans"]:
@@ -57,7 +57,7 @@ def lone_links(
         step = compose(inverse(truth[alignment["reference"]]), truth[position["index"]])
         found = pose_from(alignment["ref_from_query"])
         lacking = shortfall.get((alignment["reference"], position["index"]), 0.0)
-        links.append((float(alignment["probability"]), lacking, is_place(found, step)))
+        links.append((float(alignment["probability"]), lacking, is_place(found, step, numbers)))
     return links
 
 
@@ -65,14 +65,16 @@ def true_step(revision: Mapping[str, Any], truth: Array) -> Array:
     return compose(inverse(truth[revision["reference"]]), truth[revision["query"]])
 
 
-def best_is_right(revision: Mapping[str, Any], truth: Array) -> bool:
+def best_is_right(revision: Mapping[str, Any], truth: Array, numbers: EdgeNumbers) -> bool:
     """Up to how far it may slide, which its probability allows for."""
     best, step = revision["hypotheses"][revision["alternative"]], true_step(revision, truth)
     pose = np.array(best["pose"])
-    return is_place(pose, step) or slides_to(pose, np.array(best["covariance"]), step)
+    return is_place(pose, step, numbers) or slides_to(pose, np.array(best["covariance"]), step, numbers)
 
 
-def candidates_of(revision: Mapping[str, Any], view_shortfall: float, truth: Array) -> Candidates:
+def candidates_of(
+    revision: Mapping[str, Any], view_shortfall: float, truth: Array, numbers: EdgeNumbers
+) -> Candidates:
     step = true_step(revision, truth)
     hypotheses = revision["hypotheses"]
     poses = np.array([hypothesis["pose"] for hypothesis in hypotheses])
@@ -80,15 +82,24 @@ def candidates_of(revision: Mapping[str, Any], view_shortfall: float, truth: Arr
     def column(name: str) -> Array:
         return np.array([float(hypothesis[name]) for hypothesis in hypotheses])
 
-    right = np.array([is_place(pose, step) for pose in poses])
+    right = np.array([is_place(pose, step, numbers) for pose in poses])
     covariances = np.array([hypothesis["covariance"] for hypothesis in hypotheses])
     deviations_m = np.sqrt(np.maximum(0.0, np.linalg.eigvalsh(covariances[:, :2, :2])[:, 0]))
-    said = column("for_it"), column("against_it")
-    of_them = revision["in_map"], right, deviations_m, column("vouched")
-    return Candidates(poses, column("score"), *said, *of_them, view_shortfall)
+    return Candidates(
+        poses=poses,
+        scores=column("score"),
+        for_it=column("for_it"),
+        against_it=column("against_it"),
+        in_map=revision["in_map"],
+        right=right,
+        deviations_m=deviations_m,
+        vouched=column("vouched"),
+        numbers=numbers,
+        view_shortfall=view_shortfall,
+    )
 
 
-def links_of(write: Callable[[Path], Path], truth: Array, mapper: Mapper) -> Links:
+def links_of(write: Callable[[Path], Path], truth: Array, mapper: Mapper, numbers: EdgeNumbers) -> Links:
     """`write` puts the log into a folder."""
     with tempfile.TemporaryDirectory(prefix="links_") as name:
         folder = Path(name)
@@ -101,36 +112,36 @@ def links_of(write: Callable[[Path], Path], truth: Array, mapper: Mapper) -> Lin
         except Failure as failure:
             return Links(fault=str(failure))
         shortfall = view_shortfalls(trace)
-        links = Links(lone_links(bare_report, shortfall, truth))
+        links = Links(lone_links(bare_report, shortfall, truth, numbers))
         for line in trace.open(encoding="utf-8"):
             if not line.startswith('{"record":"revision"'):
                 continue
             revision = json.loads(line)
             lacking = shortfall.get((revision["reference"], revision["query"]), 0.0)
-            links.revised.append(candidates_of(revision, lacking, truth))
-            links.stated.append((float(revision["probability"]), best_is_right(revision, truth)))
+            links.revised.append(candidates_of(revision, lacking, truth, numbers))
+            links.stated.append((float(revision["probability"]), best_is_right(revision, truth, numbers)))
         return links
 
 
-def links_of_variant(log: VariedLog, mapper: Mapper) -> Links:
+def links_of_variant(log: VariedLog, mapper: Mapper, numbers: EdgeNumbers) -> Links:
     def write(folder: Path) -> Path:
         (folder / "log.log").write_text(log.text, encoding="utf-8")
         return folder / "log.log"
 
-    return links_of(write, log.reference, mapper)
+    return links_of(write, log.reference, mapper, numbers)
 
 
-def links_of_arena(seed: int, mapper: Mapper) -> Links:
-    return links_of_simulation(simulate(hard_arena(seed)), mapper)
+def links_of_arena(seed: int, mapper: Mapper, numbers: EdgeNumbers) -> Links:
+    return links_of_simulation(simulate(hard_arena(seed)), mapper, numbers)
 
 
-def links_of_scene(name: str, seed: int, mapper: Mapper) -> Links:
-    return links_of_simulation(SCENES[name].make(seed), mapper)
+def links_of_scene(name: str, seed: int, mapper: Mapper, numbers: EdgeNumbers) -> Links:
+    return links_of_simulation(SCENES[name].make(seed), mapper, numbers)
 
 
-def links_of_simulation(simulation: Simulation, mapper: Mapper) -> Links:
+def links_of_simulation(simulation: Simulation, mapper: Mapper, numbers: EdgeNumbers) -> Links:
     def write(folder: Path) -> Path:
         write_whole(folder / "walk.nist", nist_text(simulation))
         return folder / "walk.nist"
 
-    return links_of(write, simulation.drive.map_from_robot, mapper)
+    return links_of(write, simulation.drive.map_from_robot, mapper, numbers)

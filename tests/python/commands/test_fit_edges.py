@@ -12,9 +12,8 @@ import pytest
 
 from evaluation.commands import fit_edges as fit_edges_command
 from evaluation.fitting.edge_fits import (
-    NEIGHBOURS,
-    REVISION,
     Candidates,
+    EdgeNumbers,
     calibration_table,
     fitted_neighbours,
     fitted_revision,
@@ -22,8 +21,10 @@ from evaluation.fitting.edge_fits import (
     mean_log_likelihood,
     slides_to,
 )
-from evaluation_support import reporter, written_log
+from evaluation_support import NUMBERS, numbers, program, reporter, written_log
 
+IN_USE = EdgeNumbers.of(numbers())
+NEIGHBOURS = IN_USE.neighbours
 PLACES = np.array([[1.0, 0.0, 0.0], [3.0, 0.0, 0.0], [1.0, 2.0, 1.0], [1.1, 0.1, 0.02]])  # the last is the first
 
 
@@ -32,15 +33,15 @@ def candidates(scores: list[float], right: int = -1, **columns: Any) -> Candidat
     count = len(scores)
     nothing = dict.fromkeys(("for_it", "against_it", "deviations_m", "vouched"), np.zeros(count))
     given: dict[str, Any] = {**nothing, "in_map": 0, **columns}
-    is_right = np.array([right >= 0 and is_place(pose, PLACES[right]) for pose in PLACES[:count]], bool)
-    return Candidates(PLACES[:count], np.array(scores), right=is_right, **given)
+    is_right = np.array([right >= 0 and is_place(pose, PLACES[right], IN_USE) for pose in PLACES[:count]], bool)
+    return Candidates(PLACES[:count], np.array(scores), right=is_right, numbers=IN_USE, **given)
 
 
 @pytest.mark.parametrize(
     ("pose", "same"), [([1.3, 0, 0], True), ([1.5, 0, 0], False), ([1, 0, 0.13], True), ([1, 0, 0.15], False)]
 )
 def test_one_place_is_forty_centimetres_and_eight_degrees(pose: list[float], same: bool) -> None:
-    assert is_place(np.array(pose), PLACES[0]) is same
+    assert is_place(np.array(pose), PLACES[0], IN_USE) is same
 
 
 def test_neighbours_are_no_rivals() -> None:
@@ -76,24 +77,24 @@ def drawn(weights: tuple[float, ...], count: int) -> list[Candidates]:
 def test_the_weights_that_made_the_links_are_found() -> None:
     weights = (1.0, 4.0, 0.5, -3.0, 1.2, 14.0, -0.8, 0.3)
     links = drawn(weights, 500)
-    found = fitted_revision(links)
+    found = fitted_revision(links, IN_USE.revision, range(8))
     assert found[:4] == pytest.approx(weights[:4], abs=0.6)
     assert found[5] == pytest.approx(weights[5], abs=3.0)
     assert found[6:] == pytest.approx(weights[6:], abs=0.25)
-    assert mean_log_likelihood(links, found) >= mean_log_likelihood(links, REVISION)
+    assert mean_log_likelihood(links, found) >= mean_log_likelihood(links, IN_USE.revision)
 
 
 def test_what_is_stated_of_lone_links_is_fitted_when_it_is_wrong() -> None:
     random = np.random.default_rng(3)
     stated, shortfall = random.uniform(0.02, 0.98, 4000), random.choice([0.0, 0.2], 4000)
-    found = fitted_neighbours(stated, shortfall, random.uniform(size=4000) < stated)
+    found = fitted_neighbours(stated, shortfall, random.uniform(size=4000) < stated, NEIGHBOURS, range(3))
     assert found[:2] == pytest.approx(NEIGHBOURS[:2], abs=0.2)
     assert found[2] == pytest.approx(NEIGHBOURS[2], abs=1.5)
-    sobered = fitted_neighbours(stated, shortfall, random.uniform(size=4000) < 0.5 * stated)
+    sobered = fitted_neighbours(stated, shortfall, random.uniform(size=4000) < 0.5 * stated, NEIGHBOURS, range(3))
     assert sobered[0] < found[0] - 0.5
     half_blind = random.uniform(size=4000) < np.where(shortfall > 0, 0.5, 1) * stated
     for free in (range(3), [2]):
-        blinded = fitted_neighbours(stated, shortfall, half_blind, free)
+        blinded = fitted_neighbours(stated, shortfall, half_blind, NEIGHBOURS, free)
         assert blinded[2] < found[2] - 3.0
     assert blinded[:2] == list(NEIGHBOURS[:2])
 
@@ -123,7 +124,7 @@ def test_the_table_counts_what_is_right() -> None:
     ("pose", "same"), [([2.3, 0, 0], True), ([3, 0, 0], False), ([1, 0.5, 0], False), ([1.5, 0, 0.2], False)]
 )
 def test_along_a_corridor_it_may_slide(pose: list[float], same: bool) -> None:
-    assert slides_to(np.array(pose), np.diag([100.0, 1e-4, 1e-4]), PLACES[0]) is same
+    assert slides_to(np.array(pose), np.diag([100.0, 1e-4, 1e-4]), PLACES[0], IN_USE) is same
 
 
 # A metre from scan to scan, which is right; the second link was judged by all scans.
@@ -152,6 +153,9 @@ def test_the_program_holds_what_is_stated_against_the_truth(tmp_path: Path, caps
     assert fit_edges_command.main([*words, "--json", str(tmp_path / "out.json")]) == 0
     out = capsys.readouterr().out
     assert "5 lone links" in out
+    assert "(in use: 2.5 + 0.6 -10)" in out
+    assert "(0.7) score" in out
+    assert "(20) none of them, per view shortfall" in out
     assert "| 0.9 to 0.95 | 5 | 100.0 % | 90.0 % |" in out
     assert "1 links in doubt" in out
     assert "| 0.7 to 0.8 | 1 | 100.0 % | 75.0 % |" in out
@@ -164,6 +168,20 @@ def test_a_mapper_that_fails_is_told(tmp_path: Path, capsys: pytest.CaptureFixtu
     words = [str(written_log(tmp_path)), "--cli", str(reporter(tmp_path, "sys.exit('out of luck')"))]
     assert fit_edges_command.main([*words, "--variants", "whole"]) == 1
     assert "out of luck" in capsys.readouterr().err
+
+
+def test_weights_in_use_are_those_of_the_mapper() -> None:
+    told = NUMBERS["inference"]["verification_weights"]
+    assert IN_USE.revision[:4] == (told["per_score"], told["by_others"], told["of_map"], told["none_of_them"])
+    assert IN_USE.revision[4:] == (1.5, 20.0, -0.4, 0.6)
+    assert IN_USE.neighbours == (2.5, 0.6, -10.0)
+    assert (IN_USE.same_m, IN_USE.same_rad, IN_USE.least_score) == (0.4, 0.14, -12.0)
+
+
+def test_a_mapper_that_does_not_tell_its_numbers_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    silent = program(tmp_path / "silent", "print('[]')")
+    assert fit_edges_command.main([str(written_log(tmp_path)), "--cli", str(silent), "--variants", "whole"]) == 1
+    assert "the mapper has no number inference.verification_weights.per_score" in capsys.readouterr().err
 
 
 def test_nothing_to_look_at_is_wrong_usage() -> None:

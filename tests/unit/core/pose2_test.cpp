@@ -29,6 +29,27 @@ TEST(Pose2, InverseAndCompositionFormAGroup) {
   }
 }
 
+TEST(Pose2, AgreesWithAnotherWhereTheMotionBetweenThemIsWithinTheTolerance) {
+  const PoseTolerance tolerance{0.5, 10 * kDegree};
+  EXPECT_TRUE(agrees({1.0, 2.0, kPi - 0.01}, {1.3, 1.7, -kPi + 0.01}, tolerance)) << "headings go round";
+  EXPECT_FALSE(agrees({1.0, 2.0, 0.0}, {1.5, 2.0, 0.0}, tolerance)) << "the limit itself is out";
+  EXPECT_FALSE(agrees({1.0, 2.0, 0.0}, {1.0, 2.0, 11 * kDegree}, tolerance));
+  EXPECT_TRUE(is_within({0.3, -0.3, -9 * kDegree}, tolerance));
+  EXPECT_FALSE(is_within({0.4, -0.4, 0.0}, tolerance));
+  EXPECT_FALSE(is_within({0.0, 0.0, -11 * kDegree}, tolerance));
+  std::mt19937 rng(2);
+  std::uniform_real_distribution<double> any(-0.6, 0.6);
+  int num_agreeing = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Pose2 one{any(rng), any(rng), 0.5 * any(rng)};
+    const Pose2 other{any(rng), any(rng), 0.5 * any(rng)};
+    EXPECT_EQ(agrees(one, other, tolerance), is_within(inverse(one) * other, tolerance));
+    EXPECT_EQ(agrees(one, other, tolerance), agrees(other, one, tolerance));
+    num_agreeing += agrees(one, other, tolerance) ? 1 : 0;
+  }
+  EXPECT_GT(num_agreeing, 50);
+}
+
 TEST(WrapAngle, StaysWithinHalfATurnAndEndsOnAnyInput) {
   EXPECT_NEAR(wrap_angle(3 * kPi / 2), -kPi / 2, 1e-15);
   EXPECT_NEAR(wrap_angle(1e9), std::remainder(1e9, 2 * kPi), 0.0);

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "graph/graph_numbers.hpp"
 #include "support/matchers.hpp"
 #include "support/ring_laps.hpp"
 
@@ -26,7 +27,7 @@ TEST(EdgeConstraint, IsHeldByTheUsualMotionWhereTheScansSayLittle) {
   KeyframeGraph graph = sliding_edge();
   const Eigen::Matrix3d by_scans = pose_covariance(graph.edges[0].candidates[0].fit);
   EXPECT_GT(std::sqrt(by_scans(0, 0)), 5.0);
-  EXPECT_NEAR(deviation_m(graph), kUsualSlip_m, 0.01) << "nothing is expected";
+  EXPECT_NEAR(deviation_m(graph), kGraph.steps.usual_slip_m, 0.01) << "nothing is expected";
   EXPECT_NEAR(edge_constraint(graph, 0, 0).covariance(1, 1), by_scans(1, 1), 0.02 * by_scans(1, 1));
   const Pose2 pose = graph.edges[0].candidates[0].ref_from_query;
   graph.keyframes[1].expected = ExpectedPose{pose * Pose2{0.1, 0.0, 2 * kDegree}};

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "localization/localization_numbers.hpp"
 #include "mapper/keyframe_culling.hpp"
 #include "shapemap/inference/map_search.hpp"
 #include "support/matchers.hpp"
@@ -57,7 +58,9 @@ std::size_t num_known(const RevisitTracker::Followed& followed, std::size_t firs
 }
 
 /// The last few keyframes are left for later, and those before them may still be on a wrong way.
-std::size_t end_of_followed(const Laps& laps) { return laps.truth.size() - kKeyframesInUse - 12; }
+std::size_t end_of_followed(const Laps& laps) {
+  return laps.truth.size() - kLocalization.redundancy.keyframes_in_use - 12;
+}
 
 /// The poses of a robot whose each step is off by so much.
 std::vector<Pose2> drifting(const std::vector<Pose2>& truth, const Pose2& error) {
@@ -185,7 +188,7 @@ TEST(RevisitTracker, FindTheWayAgainWhereALoopPutsIt) {
   wrong.a -= 5;
   wrong.log_odds = 3.0;
   const RevisitTracker::Followed result = followed(laps, known, {wrong, loop_to(laps, kWrong + 9)});
-  EXPECT_EQ(result.num_followed, laps.truth.size() - kKeyframesInUse);
+  EXPECT_EQ(result.num_followed, laps.truth.size() - kLocalization.redundancy.keyframes_in_use);
   EXPECT_GE(num_known(result) + 2, num_known(followed(laps, KnownGraph(laps))));  // the two at the link stay
   for (std::size_t b = 0; b < result.num_followed; ++b) {
     EXPECT_EQ(result.map.component[b], 0U) << b;
@@ -212,7 +215,7 @@ TEST(RevisitTracker, GetLostWhereSomethingElseIsSeen) {
   known.graph.edges[kWrong - 1].candidates = known.graph.edges[kWrong - 2].candidates;  // sure by what it seems to be
   known.graph.edges[kWrong - 1].candidates.front().ref_from_query =
       inverse(laps.truth[kWrong - 1]) * laps.truth[kWrong] * Pose2{0.7, 0.0, 5 * kDegree};
-  ASSERT_GE(stated_probability(known.graph.edges[kWrong - 1]), kSureEdge);
+  ASSERT_GE(stated_probability(known.graph.edges[kWrong - 1]), kLocalization.redundancy.sure_edge);
   const RevisitTracker::Followed result = followed(laps, known);
   EXPECT_LE(result.num_followed, kWrong + 2);
   EXPECT_EQ(num_known(result, kWrong), 0U);
@@ -278,8 +281,8 @@ TEST(RevisitTracker, GoOnWhereTheyWere) {
   const Laps& laps = two_laps();
   KnownGraph all(laps);
   KnownGraph known(laps);
-  known.graph.keyframes.resize(kSettled + kKeyframesInUse);
-  known.graph.edges.resize(kSettled + kKeyframesInUse - 1);
+  known.graph.keyframes.resize(kSettled + kLocalization.redundancy.keyframes_in_use);
+  known.graph.edges.resize(kSettled + kLocalization.redundancy.keyframes_in_use - 1);
   choose_candidates(known.graph);
   OptimizedMap map = known.map;
   map.map_from_keyframe.resize(known.graph.keyframes.size());
@@ -291,7 +294,7 @@ TEST(RevisitTracker, GoOnWhereTheyWere) {
   revisits.start(known.graph, map, kSettled);
   LoopCandidates loops;
   std::size_t num_retired = 0;
-  for (std::size_t next = kSettled + kKeyframesInUse; next < laps.truth.size(); next += 7) {
+  for (std::size_t next = kSettled + kLocalization.redundancy.keyframes_in_use; next < laps.truth.size(); next += 7) {
     for (std::size_t i = next; i < std::min(next + 7, laps.truth.size()); ++i) {
       known.graph.keyframes.push_back(all.graph.keyframes[i]);
       known.graph.edges.push_back(all.graph.edges[i - 1]);

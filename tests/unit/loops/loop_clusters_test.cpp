@@ -137,7 +137,7 @@ bool support(const Way& way, const LoopCandidate& x, const LoopCandidate& y, con
   const Pose2 by_detour =
       inverse(way.poses[other.a]) * way.poses[one.a] * one.a_from_b * inverse(way.poses[one.b]) * way.poses[other.b];
   const Pose2 off = inverse(other.a_from_b) * by_detour;
-  return std::hypot(off.x_m, off.y_m) < options.same_m && std::abs(off.theta_rad) < options.same_rad;
+  return std::hypot(off.x_m, off.y_m) < options.same.m && std::abs(off.theta_rad) < options.same.rad;
 }
 
 /// Groups of all that support each other, by flood fill.

@@ -25,8 +25,8 @@ struct Walk {
   LoopCandidate right(std::size_t a, std::size_t b, double log_odds) const {
     return loop(a, b, inverse(map[a]) * map[b], log_odds);
   }
-  std::vector<LoopCandidate> of(const std::vector<LoopCandidate>& candidates) const {
-    return without_aliases(candidates, edges, map);
+  std::vector<LoopCandidate> of(const std::vector<LoopCandidate>& candidates, double sure_probability = 0.97) const {
+    return without_aliases(candidates, edges, map, sure_probability);
   }
 
   std::vector<Pose2> map;
@@ -57,6 +57,13 @@ TEST(PerceptualAliasing, ATurnIsContradictedAsWell) {
   EXPECT_EQ(walk.of({walk.loop(10, 20, {10.0, 0.0, 20 * kDegree}, 3.0)}).size(), 1U);
 }
 
+TEST(PerceptualAliasing, HowSureAnEdgeMustBeToContradictIsForTheCallerToSay) {
+  const Walk walk;
+  const std::vector<LoopCandidate> wrong{walk.loop(10, 22, {0.1, 0.0, 0.0}, 3.0)};
+  EXPECT_TRUE(walk.of(wrong, 0.99).empty()) << "as sure as the edges are";
+  EXPECT_EQ(walk.of(wrong, 0.995).size(), 1U);
+}
+
 TEST(PerceptualAliasing, ADoubtfulLinkOrOneThatSlidesContradictsNothing) {
   const LoopCandidate off = Walk().loop(10, 22, {}, 3.0);
   Walk doubtful;
@@ -74,7 +81,7 @@ TEST(PerceptualAliasing, NeedsAMapOfTheChain) {
   Walk walk;
   walk.map.pop_back();
   EXPECT_THROW(walk.of({}), std::invalid_argument);
-  EXPECT_TRUE(without_aliases({}, {}, {}).empty());
+  EXPECT_TRUE(without_aliases({}, {}, {}, 0.97).empty());
 }
 
 }  // namespace

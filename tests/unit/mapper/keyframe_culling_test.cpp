@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 
+#include "localization/localization_numbers.hpp"
 #include "shapemap/mapper/map_log.hpp"
 #include "support/matchers.hpp"
 #include "support/ring_laps.hpp"
@@ -51,7 +52,7 @@ TEST(RedundantKeyframes, AreEarlierKeyframesAtTheSamePlace) {
     const Pose2 a_from_b = inverse(laps.truth[a]) * laps.truth[b];
     EXPECT_LT(a_from_b.translation().norm(), 0.5);
     EXPECT_THAT(redundant[b]->pose.ref_from_query, test::IsNearPose(a_from_b, 0.06, 1.5 * kDegree));
-    EXPECT_LT(b + kKeyframesInUse, redundant.size());
+    EXPECT_LT(b + kLocalization.redundancy.keyframes_in_use, redundant.size());
   }
   EXPECT_GT(found, test::kRingLap / 4);  // the robot sways by more than 20 degrees
 }
@@ -106,7 +107,7 @@ TEST(RetiredKeyframes, LeaveAChainThatSaysWhatTheMapDid) {
       redundant.begin());
   known.graph.attached.push_back({1000, retired, here});
   LoopCandidates loops;
-  loops.num_searched = laps.truth.size() - kKeyframesInUse;
+  loops.num_searched = laps.truth.size() - kLocalization.redundancy.keyframes_in_use;
   cull_keyframes(redundant, quick(), known.map, known.graph, loops);
 
   const auto num_retired = static_cast<std::size_t>(
@@ -114,7 +115,7 @@ TEST(RetiredKeyframes, LeaveAChainThatSaysWhatTheMapDid) {
   ASSERT_EQ(known.graph.keyframes.size(), laps.truth.size() - num_retired);
   ASSERT_EQ(known.graph.edges.size(), known.graph.keyframes.size() - 1);
   EXPECT_EQ(known.graph.attached.size(), num_retired + 1);
-  EXPECT_EQ(loops.num_searched, known.graph.keyframes.size() - kKeyframesInUse);
+  EXPECT_EQ(loops.num_searched, known.graph.keyframes.size() - kLocalization.redundancy.keyframes_in_use);
 
   std::set<std::size_t> all;
   for (const Keyframe& keyframe : known.graph.keyframes) all.insert(keyframe.scan_index);

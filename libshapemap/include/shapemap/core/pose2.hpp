@@ -52,9 +52,21 @@ inline Pose2 inverse(const Pose2& b_from_a) {
   return {t.x(), t.y(), wrap_angle(-b_from_a.theta_rad)};
 }
 
-/// Says whether a motion is shorter than `metres` and turns by less than `radians`.
-inline bool is_within(const Pose2& motion, double metres, double radians) {
-  return motion.translation().norm() < metres && std::abs(motion.theta_rad) < radians;
+/// How far two poses may lie apart and still count as one, in place and in heading.
+struct PoseTolerance {
+  double m = 0.0;
+  double rad = 0.0;
+};
+
+/// Says whether a motion is shorter, and turns by less, than the tolerance.
+inline bool is_within(const Pose2& motion, const PoseTolerance& tolerance) {
+  return motion.translation().norm() < tolerance.m && std::abs(motion.theta_rad) < tolerance.rad;
+}
+
+/// Says whether two poses in one frame are the same place up to the tolerance: the motion between them is within it.
+inline bool agrees(const Pose2& one, const Pose2& other, const PoseTolerance& tolerance) {
+  return (one.translation() - other.translation()).norm() < tolerance.m &&
+         angle_between(one.theta_rad, other.theta_rad) < tolerance.rad;
 }
 
 inline bool operator==(const Pose2& a, const Pose2& b) {

@@ -12,10 +12,7 @@ struct EdgeSupport {
   void add(double evidence) { (evidence > 0.0 ? for_it : against_it) += evidence > 0.0 ? evidence : -evidence; }
 
   /// -1: all against it, 0: nothing said, 1: all for it.
-  double value() const {
-    constexpr double kLittle = 1.2;
-    return (for_it - against_it) / (for_it + against_it + kLittle);
-  }
+  double value() const;
 };
 
 }  // namespace shapemap

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "shapemap/core/options.hpp"
+#include "shapemap/core/pose2.hpp"
 
 namespace shapemap {
 
@@ -10,6 +11,9 @@ struct KeyframeOptions {
   double step_m = 0.50;
   double turn_rad = 20 * kDegree;
   int settle_at = 1000;
+
+  /// Within this of a keyframe, a scan is at its place.
+  PoseTolerance near() const { return {step_m, turn_rad}; }
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {

@@ -38,9 +38,7 @@ double squared_error(const PoseConstraint& constraint, const std::vector<Pose2>&
 /// turned by more than 10 degrees.
 double deviations_off(const PoseConstraint& one, const Pose2& other);
 
-inline constexpr double kSameDeviations = 3.0;
-
-/// Whether `other` is the same place, as far as a constraint holds it.
+/// Whether `other` is the same place, as far as a constraint holds it: within three standard deviations.
 bool is_same_place(const PoseConstraint& one, const Pose2& other);
 
 /// For each node the lowest number among the nodes that it hangs together with.

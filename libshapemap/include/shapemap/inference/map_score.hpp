@@ -21,9 +21,6 @@ class MapScore {
   MapScore(std::vector<std::shared_ptr<const ScanView>> views, VisibilityOptions options, int threads)
       : views_(std::move(views)), options_(options), threads_(threads) {}
 
-  /// What counts of it: pairs of scans do not tell independently of each other.
-  static constexpr double kWeight = 0.5;
-
   /// `ring_of_node` tells nodes that loops hold to each other. Of all others, a long chain has bent, and whether they
   /// go together at the poses of the map tells little; without it, all are held.
   double of(const std::vector<Pose2>& map_from_node, const std::vector<std::size_t>& ring_of_node = {});

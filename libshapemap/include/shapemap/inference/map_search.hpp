@@ -15,13 +15,6 @@
 /// Which loops are real, and which of its alternatives each doubtful alignment of the chain takes.
 namespace shapemap {
 
-/// A map that is farther than this off what a loop says contradicts it: the loop is not closed in it.
-inline constexpr double kContradicts_m = 1.0;
-inline constexpr double kContradicts_rad = 10 * kDegree;
-
-/// Pieces of a map that nothing joins lie so far apart: no scan sees so far.
-inline constexpr double kComponentsApart_m = 1e4;
-
 struct MapSearchOptions {
   int assemblies = 12;
   double doubt_below = 0.97;

@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "shapemap/core/options.hpp"
+#include "shapemap/core/angles.hpp"
+#include "shapemap/core/numbers.hpp"
 #include "shapemap/core/pose2.hpp"
 
 namespace shapemap {
@@ -19,7 +20,10 @@ struct LoopCandidate {
   double log_odds = 0.0;  ///< that it is right, by the two scans alone; less where they do not hold it
 };
 
-/// What a hypothesis counts for in a cluster, as logarithm of odds; never negative.
+/// What a match counts for that others may support, by its own log odds: as logarithm of odds, never negative.
+double worth_among_others(double log_odds);
+
+/// The same of a candidate in its cluster.
 double worth_of_member(const LoopCandidate& member);
 
 /// Hypotheses that say the same: several scans of one stretch of the way lie so about several of another.
@@ -30,11 +34,24 @@ struct LoopCluster {
   std::size_t num_b = 0;
 };
 
+/// What makes a cluster.
 struct ClusterOptions {
   int window = 4;
-  double same_m = 0.40;
-  double same_rad = 6 * kDegree;
+  PoseTolerance same{0.40, 6 * kDegree};
   int least_nodes = 2;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(NumberField{"window", "matches support each other between nodes so near along the way, on both sides",
+                      "set by hand: scans so near still see much the same"},
+          self.window);
+    visit(NumberField{"same", "and when they agree to this; so must the matches of two submaps",
+                      "set by hand: the error of two matches and of the way between them"},
+          self.same);
+    visit(NumberField{"least_nodes", "a cluster has so many nodes on either side",
+                      "set by hand: it must not hang on one scan"},
+          self.least_nodes);
+  }
 };
 
 /// `map_from_node` is the chain, of which only short pieces are trusted: pieces with the same `submap_of_node`.

@@ -13,10 +13,10 @@ namespace shapemap {
 /// of one place, though the chain is sure that they are not, that one is left out, and what else is known of these
 /// nodes and their neighbours loses its odds: other places may look like that as well.
 ///
-/// `map_of_odometry`: poses of the nodes by the first alternative of each link. Throws std::invalid_argument unless it
-/// has more nodes than links.
+/// Edges that are at least `sure_probability` probable are not questioned. `map_of_odometry`: poses of the nodes by the
+/// first alternative of each link. Throws std::invalid_argument unless it has more nodes than links.
 std::vector<LoopCandidate> without_aliases(const std::vector<LoopCandidate>& candidates,
                                            const std::vector<EdgeChoices>& edges,
-                                           const std::vector<Pose2>& map_of_odometry);
+                                           const std::vector<Pose2>& map_of_odometry, double sure_probability);
 
 }  // namespace shapemap

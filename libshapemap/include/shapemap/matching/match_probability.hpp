@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "shapemap/core/numbers.hpp"
 #include "shapemap/matching/match_search.hpp"
 
 /// What an alignment is worth.
@@ -32,11 +33,20 @@ double lead_of_first(const std::vector<MatchCandidate>& candidates);
 
 /// What a point tells of a pose by its line.
 struct LineNoise {
-  /// Spread of a point about its line, larger than it is: neighbouring points err alike, which makes many count as few.
-  /// Set so that errors on simulated arenas agree with the covariance in the median.
   double residual_m = 0.12;
-  /// Tangents are only known to a few degrees: what a point seems to tell about sliding along its own line is noise.
   double tangent = 0.10;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit(NumberField{"residual_m",
+                      "spread of a point about its line, larger than it is: neighbouring points err alike, which makes "
+                      "many count as few",
+                      "errors on simulated arenas, which agree with the covariance in the median"},
+          self.residual_m);
+    visit(NumberField{"tangent", "what a point seems to tell about sliding along its own line, and is noise",
+                      "set by hand: tangents are only known to a few degrees"},
+          self.tangent);
+  }
 };
 
 /// Covariance of (x, y, theta) from the lines that hold the pose; a direction that none holds gets metres.
