@@ -74,12 +74,12 @@ inline Eigen::Matrix3d covariance_of(double deviation_m, double deviation_rad) {
 }
 
 /// Returns the odometry edges of a robot that errs by `drift_rad` to the left at each step.
-inline std::vector<EdgeChoices> drifting_edges(const std::vector<Pose2>& truth, double drift_rad, unsigned seed = 3) {
+inline std::vector<Edge> drifting_edges(const std::vector<Pose2>& truth, double drift_rad, unsigned seed = 3) {
   std::mt19937 rng(seed);
-  std::vector<EdgeChoices> edges(truth.size() - 1);
+  std::vector<Edge> edges(truth.size() - 1);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const Pose2 step = inverse(truth[i]) * truth[i + 1] * random_pose(rng, 0.02, 0.1 * kDegree);
-    edges[i].candidates = {{step * Pose2{0.0, 0.0, drift_rad}, covariance_of(0.03, 1 * kDegree), 0.0}};
+    edges[i].candidates = {{i, i + 1, step * Pose2{0.0, 0.0, drift_rad}, covariance_of(0.03, 1 * kDegree), 0.0}};
     edges[i].probability = 0.99;
   }
   return edges;
@@ -124,9 +124,9 @@ inline double worst_off_m(const std::vector<Pose2>& map_from_node, const std::ve
 }
 
 /// Composes the first candidates of `edges`.
-inline std::vector<Pose2> dead_reckoning(const std::vector<EdgeChoices>& edges, const Pose2& first = {}) {
+inline std::vector<Pose2> dead_reckoning(const std::vector<Edge>& edges, const Pose2& first = {}) {
   std::vector<Pose2> poses{first};
-  for (const EdgeChoices& edge : edges) poses.push_back(poses.back() * edge.candidates.front().a_from_b);
+  for (const Edge& edge : edges) poses.push_back(poses.back() * edge.candidates.front().a_from_b);
   return poses;
 }
 

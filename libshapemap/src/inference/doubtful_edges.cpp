@@ -53,14 +53,14 @@ class DoubtfulEdges {
 
  private:
   struct Doubt {
-    DoubtfulEdge of_map;
+    Edge of_map;
     std::size_t in_map;                   ///< which of the link's hypotheses
     std::vector<std::size_t> candidates;  ///< per candidate: which of the link's
   };
 
   /// Joins what is certain by the candidates that there are; the rest stays in doubt.
   void settle(double least_probability) {
-    std::vector<DoubtfulEdge> doubtful;
+    std::vector<Edge> doubtful;
     for (const Doubt& doubt : doubts_) doubtful.push_back(doubt.of_map);
     VerifiedMap verified = verify_edges(views_, poses_, submap_, doubtful, options_.matcher.search.visibility,
                                         least_probability, execution_.threads, execution_.observer);
@@ -72,7 +72,7 @@ class DoubtfulEdges {
       const std::size_t candidate = doubts_[d].candidates[edge.candidate];
       note(doubts_[d], edge);
       if (edge.joins) {
-        take(doubts_[d].of_map.edge, static_cast<int>(candidate));
+        take(doubts_[d].of_map.a, static_cast<int>(candidate));
       } else {
         rest.push_back(std::move(doubts_[d]));
       }
@@ -84,7 +84,7 @@ class DoubtfulEdges {
   void cut_those(bool all) {
     std::vector<Doubt> rest;
     for (Doubt& doubt : doubts_) {
-      const std::size_t edge = doubt.of_map.edge;
+      const std::size_t edge = doubt.of_map.a;
       if (!all && submap_[edge] != submap_[edge + 1]) {
         rest.push_back(std::move(doubt));
         continue;
@@ -97,7 +97,7 @@ class DoubtfulEdges {
 
   /// Where the observer asked to stop, nobody was asked, and the link is as probable as before.
   void note(const Doubt& doubt, const VerifiedEdge& edge) {
-    std::optional<VerifiedChoice>& verified = graph_.edges[doubt.of_map.edge].verified;
+    std::optional<VerifiedChoice>& verified = graph_.edges[doubt.of_map.a].verified;
     verified.reset();
     if (edge.support_by_others.empty()) return;
     verified = VerifiedChoice{doubt.candidates[edge.candidate], edge.probability, doubt.in_map,
@@ -126,7 +126,12 @@ class DoubtfulEdges {
     submap_ = connected_components(views_.size(), sure);
     for (const std::size_t i : doubtful) {
       if (submap_[i] == submap_[i + 1]) continue;
-      doubts_.push_back({{i, {}, graph_.edges[i].insufficient_view}, candidate_in_map(i), {}});
+      Edge edge;
+      edge.a = i;
+      edge.b = i + 1;
+      edge.insufficient_view = graph_.edges[i].insufficient_view;
+      const std::size_t in_map = candidate_in_map(i);
+      doubts_.push_back({std::move(edge), in_map, {}});
     }
   }
 
@@ -172,7 +177,7 @@ class DoubtfulEdges {
   }
 
   void add_candidates(Doubt& doubt, bool thoroughly) {
-    const std::size_t i = doubt.of_map.edge;
+    const std::size_t i = doubt.of_map.a;
     OdometryEdge& edge = graph_.edges[i];
     if (thoroughly) {
       search_again(i);
@@ -188,9 +193,13 @@ class DoubtfulEdges {
     }
   }
 
-  DoubtfulEdge::Candidate candidate(std::size_t i, std::size_t k, const Pose2& a_from_b) const {
+  EdgeCandidate candidate(std::size_t i, std::size_t k, const Pose2& a_from_b) const {
     const MatchCandidate& candidate = graph_.edges[i].candidates[k];
-    return {a_from_b, candidate.score, edge_constraint(graph_, i, k).covariance,
+    return {i,
+            i + 1,
+            a_from_b,
+            edge_constraint(graph_, i, k).covariance,
+            candidate.score,
             best_deviation_m(pose_covariance(candidate.fit))};
   }
 
@@ -214,7 +223,7 @@ class DoubtfulEdges {
   /// What scans before and after a link say of each other is carried to the link by way of the map.
   void add_bridges(std::size_t i) {
     const std::vector<Pose2>& poses = map_.map_from_keyframe;
-    for (const LoopCandidate& bridge :
+    for (const EdgeCandidate& bridge :
          cross_edge_matches(views_, {i}, {options_.matcher.search, options_.loop_detection, execution_, store_})) {
       const Pose2 a_from_b =
           inverse(poses[i]) * (poses[bridge.a] * bridge.a_from_b * inverse(poses[bridge.b])) * poses[i + 1];

@@ -16,7 +16,7 @@ namespace shapemap {
 /// alignment is wrong, or a loop. Stops early when the observer asks to.
 class EdgeMoves {
  public:
-  EdgeMoves(MapObjective& problem, LoopMoves& closer, const std::vector<EdgeChoices>& edges,
+  EdgeMoves(MapObjective& problem, LoopMoves& closer, const std::vector<Edge>& edges,
             const std::vector<LoopCluster>& clusters, const MapSearchOptions& options, RunObserver& observer)
       : problem_(problem),
         closer_(closer),
@@ -40,7 +40,7 @@ class EdgeMoves {
 
   MapObjective& problem_;
   LoopMoves& closer_;
-  const std::vector<EdgeChoices>& edges_;
+  const std::vector<Edge>& edges_;
   const std::vector<LoopCluster>& clusters_;
   const MapSearchOptions& options_;
   RunObserver& observer_;

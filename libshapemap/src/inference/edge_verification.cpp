@@ -19,14 +19,14 @@ namespace shapemap {
 namespace {
 
 /// By its two scans, and whether the map has it.
-double worth_by_itself(const DoubtfulEdge& doubt, std::size_t k) {
-  const DoubtfulEdge::Candidate& candidate = doubt.candidates[k];
+double worth_by_itself(const Edge& doubt, std::size_t k) {
+  const EdgeCandidate& candidate = doubt.candidates[k];
   const VerificationWeights& weights = kInference.verification_weights;
   return weights.per_score * std::max(weights.least_score, candidate.score) +
          weights.per_log_deviation * std::log1p(candidate.best_deviation_m) + (k == 0 ? weights.of_map : 0.0);
 }
 
-double worth_of_none(const DoubtfulEdge& doubt) {
+double worth_of_none(const Edge& doubt) {
   const VerificationWeights& weights = kInference.verification_weights;
   return weights.none_of_them + weights.none_per_insufficient_view * doubt.insufficient_view;
 }
@@ -35,7 +35,7 @@ bool is_same(const Pose2& a, const Pose2& b) { return agrees(a, b, kInference.ag
 
 /// How right it is to be at the candidate `one` when `other` is true: a place is right or not, but along a corridor it
 /// slides, and is the less right the farther.
-double share_right(const DoubtfulEdge::Candidate& one, const Pose2& other) {
+double share_right(const EdgeCandidate& one, const Pose2& other) {
   if (is_same(one.a_from_b, other)) return 1.0;
   const double deviations = deviations_off({0, 0, one.a_from_b, one.covariance, 0.0}, other);
   return std::max(0.0, 1.0 - deviations / kGraph.same_place.deviations);
@@ -43,12 +43,12 @@ double share_right(const DoubtfulEdge::Candidate& one, const Pose2& other) {
 
 /// The best candidate by their `worths`, against all others, and none of them. Where nothing holds it along a corridor,
 /// it is right if any is that it may slide to.
-VerifiedEdge verdict_by(const std::vector<double>& worths, const DoubtfulEdge& doubt) {
-  const std::vector<DoubtfulEdge::Candidate>& candidates = doubt.candidates;
+VerifiedEdge verdict_by(const std::vector<double>& worths, const Edge& doubt) {
+  const std::vector<EdgeCandidate>& candidates = doubt.candidates;
   std::vector<std::size_t> order(worths.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t j, std::size_t k) { return worths[j] > worths[k]; });
-  const DoubtfulEdge::Candidate& best = candidates[order.front()];
+  const EdgeCandidate& best = candidates[order.front()];
   double right = 0.0;
   double all = std::exp(worth_of_none(doubt) - worths[order.front()]);
   std::vector<Pose2> places;
@@ -67,7 +67,7 @@ VerifiedEdge verdict_by(const std::vector<double>& worths, const DoubtfulEdge& d
 
 class Revision {
  public:
-  Revision(const NodeViews& views, const std::vector<DoubtfulEdge>& doubtful, Submaps submaps,
+  Revision(const NodeViews& views, const std::vector<Edge>& doubtful, Submaps submaps,
            const VisibilityOptions& visibility, int threads)
       : views_(views),
         doubtful_(doubtful),
@@ -91,7 +91,7 @@ class Revision {
   std::optional<std::size_t> most_probable(double least_probability) {
     std::optional<std::size_t> best;
     for (std::size_t d = 0; d < doubtful_.size(); ++d) {
-      if (submaps_.is_joined(doubtful_[d].edge)) continue;
+      if (submaps_.is_joined(doubtful_[d].a)) continue;
       if (is_stale_[d]) edges_[d] = judged(d);
       is_stale_[d] = 0;
       if (edges_[d].probability < least_probability) continue;
@@ -101,10 +101,10 @@ class Revision {
   }
 
   VerifiedEdge judged(std::size_t d) const {
-    const DoubtfulEdge& doubt = doubtful_[d];
+    const Edge& doubt = doubtful_[d];
     std::vector<EdgeSupport> balances(doubt.candidates.size());
     parallel_for(balances.size(), threads_,
-                 [&](std::size_t k) { balances[k] = support_by_others(doubt.edge, doubt.candidates[k].a_from_b); });
+                 [&](std::size_t k) { balances[k] = support_by_others(doubt.a, doubt.candidates[k].a_from_b); });
     std::vector<double> parallel_support = said_by_parallel(d);
     const VerificationWeights& weights = kInference.verification_weights;
     std::vector<double> worths;
@@ -143,13 +143,13 @@ class Revision {
   /// Of each candidate, how much more than none of its own the parallel link says for it that says most. The two do not
   /// tell independently of each other, so it counts in part.
   std::vector<double> said_by_parallel(std::size_t d) const {
-    const DoubtfulEdge& doubt = doubtful_[d];
+    const Edge& doubt = doubtful_[d];
     std::vector<double> said(doubt.candidates.size(), 0.0);
     for (const std::size_t e : parallel_to(d)) {
       if (!are_near(d, e)) continue;
-      const DoubtfulEdge& other = doubtful_[e];
+      const Edge& other = doubtful_[e];
       for (std::size_t j = 0; j < other.candidates.size(); ++j) {
-        const Pose2 place = submaps_.carried_to(doubt.edge, other.edge, other.candidates[j].a_from_b);
+        const Pose2 place = submaps_.carried_to(doubt.a, other.a, other.candidates[j].a_from_b);
         const double more_than_none = worth_by_itself(other, j) - worth_of_none(other);
         for (std::size_t k = 0; k < said.size(); ++k) {
           if (is_same(place, doubt.candidates[k].a_from_b)) said[k] = std::max(said[k], more_than_none);
@@ -162,23 +162,23 @@ class Revision {
   std::vector<std::size_t> parallel_to(std::size_t d) const {
     std::vector<std::size_t> parallel;
     for (std::size_t e = 0; e < doubtful_.size(); ++e) {
-      if (e != d && submaps_.are_parallel(doubtful_[d].edge, doubtful_[e].edge)) parallel.push_back(e);
+      if (e != d && submaps_.are_parallel(doubtful_[d].a, doubtful_[e].a)) parallel.push_back(e);
     }
     return parallel;
   }
 
   bool are_near(std::size_t d, std::size_t e) const {
-    const auto [before, after] = std::minmax(doubtful_[d].edge, doubtful_[e].edge);
+    const auto [before, after] = std::minmax(doubtful_[d].a, doubtful_[e].a);
     return after - before <= kInference.verification.window;
   }
 
   /// With the parallel links that say the same; those that say otherwise are no more probable than that it is wrong.
   void join(std::size_t d) {
-    const std::size_t edge = doubtful_[d].edge;
+    const std::size_t edge = doubtful_[d].a;
     const Pose2 a_from_b = doubtful_[d].candidates[edges_[d].candidate].a_from_b;
     const double probability = edges_[d].probability;
     for (const std::size_t e : parallel_to(d)) {
-      const Pose2 place = submaps_.carried_to(doubtful_[e].edge, edge, a_from_b);
+      const Pose2 place = submaps_.carried_to(doubtful_[e].a, edge, a_from_b);
       const std::optional<std::size_t> same = candidate_at(place, doubtful_[e], are_near(d, e));
       edges_[e].joins = same.has_value();
       edges_[e].candidate = same.value_or(edges_[e].candidate);
@@ -188,13 +188,13 @@ class Revision {
     submaps_.join(edge, a_from_b);
     const std::vector<std::size_t>& submap = submaps_.submap_of_node();
     for (std::size_t e = 0; e < doubtful_.size(); ++e) {
-      const std::size_t other = doubtful_[e].edge;
+      const std::size_t other = doubtful_[e].a;
       if (submap[other] == submap[edge] || submap[other + 1] == submap[edge]) is_stale_[e] = 1;
     }
   }
 
   /// That of the map where it is one, else the nearest. Along a long way more must be allowed for.
-  static std::optional<std::size_t> candidate_at(const Pose2& place, const DoubtfulEdge& doubt, bool is_near) {
+  static std::optional<std::size_t> candidate_at(const Pose2& place, const Edge& doubt, bool is_near) {
     std::optional<std::size_t> nearest;
     double nearest_m = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < doubt.candidates.size(); ++k) {
@@ -212,7 +212,7 @@ class Revision {
 
   void leave_as_they_were() {
     for (std::size_t d = 0; d < doubtful_.size(); ++d) {
-      const std::size_t edge = doubtful_[d].edge;
+      const std::size_t edge = doubtful_[d].a;
       const Pose2& in_map = doubtful_[d].candidates.front().a_from_b;
       if (edges_[d].joins || (submaps_.is_joined(edge) && !is_same(submaps_.step(edge), in_map))) continue;
       if (!submaps_.is_joined(edge)) submaps_.join(edge, in_map);
@@ -221,7 +221,7 @@ class Revision {
   }
 
   const NodeViews& views_;
-  const std::vector<DoubtfulEdge>& doubtful_;
+  const std::vector<Edge>& doubtful_;
   Submaps submaps_;
   const VisibilityOptions& visibility_;
   int threads_;
@@ -232,7 +232,7 @@ class Revision {
 }  // namespace
 
 VerifiedMap verify_edges(const NodeViews& views, std::vector<Pose2> map_from_node,
-                         std::vector<std::size_t> submap_of_node, const std::vector<DoubtfulEdge>& doubtful,
+                         std::vector<std::size_t> submap_of_node, const std::vector<Edge>& doubtful,
                          const VisibilityOptions& visibility, double least_probability, int threads,
                          RunObserver& observer) {
   Submaps submaps(std::move(map_from_node), std::move(submap_of_node));

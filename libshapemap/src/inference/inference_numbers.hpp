@@ -65,7 +65,7 @@ struct SearchNumbers {
                       "set by hand: wider, as the map swings farther"},
           self.hopeless_loop);
     visit(NumberField{"trusted", "edges at least so probable hold their nodes well enough to compare loops",
-                      "set by hand: a wrong one only parts clusters; it equals --loop-bridge-below, which decides "
+                      "set by hand: a wrong one only parts clusters; it equals --cross-match-below, which decides "
                       "something else: where matches across an edge are sought"},
           self.trusted);
     visit(NumberField{"components_apart_m", "components of a map that nothing joins lie so far apart",

@@ -24,7 +24,7 @@ std::vector<PoseConstraint> constraints_of(const LoopCluster& cluster) {
   std::vector<PoseConstraint> result;
   std::set<std::size_t> of_a;
   std::set<std::size_t> of_b;
-  for (const LoopCandidate& member : cluster.members) {
+  for (const EdgeCandidate& member : cluster.members) {
     if (result.size() == kInference.objective.members_used) break;
     if (of_a.count(member.a) != 0 || of_b.count(member.b) != 0) continue;
     of_a.insert(member.a);
@@ -36,9 +36,9 @@ std::vector<PoseConstraint> constraints_of(const LoopCluster& cluster) {
 
 }  // namespace
 
-MapObjective::MapObjective(const std::vector<std::shared_ptr<const ScanView>>& views,
-                           const std::vector<EdgeChoices>& edges, const std::vector<LoopCluster>& clusters,
-                           const VisibilityOptions& visibility, const MapSearchOptions& options, int threads)
+MapObjective::MapObjective(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<Edge>& edges,
+                           const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
+                           const MapSearchOptions& options, int threads)
     : edges_(edges),
       clusters_(clusters),
       options_(options),
@@ -102,7 +102,7 @@ std::vector<PoseConstraint> MapObjective::constraints(const MapHypothesis& choic
   std::vector<PoseConstraint> all;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (choice.edge_choice[i] == kCut) continue;
-    const EdgeChoices::Candidate& edge = edges_[i].candidates[static_cast<std::size_t>(choice.edge_choice[i])];
+    const EdgeCandidate& edge = edges_[i].candidates[static_cast<std::size_t>(choice.edge_choice[i])];
     all.push_back({i, i + 1, edge.a_from_b, edge.covariance, 0.0});
   }
   for (std::size_t k = 0; k < clusters_.size(); ++k) {
@@ -144,7 +144,7 @@ double MapObjective::cost_of_edges(const MapHypothesis& choice) const {
   const ObjectiveNumbers& numbers = kInference.objective;
   double cost = 0.0;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
-    const EdgeChoices& edge = edges_[i];
+    const Edge& edge = edges_[i];
     if (!edge.exists() || edge.probability >= options_.doubt_below) continue;
     if (choice.edge_choice[i] == kCut) {
       const double p = std::clamp(std::max(edge.probability, edge.any_probability), numbers.least_probability,

@@ -26,7 +26,7 @@ struct MapHypothesis {
 /// Maps that follow from choices, and what they are worth.
 class MapObjective {
  public:
-  MapObjective(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<EdgeChoices>& edges,
+  MapObjective(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<Edge>& edges,
                const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
                const MapSearchOptions& options, int threads);
 
@@ -62,7 +62,7 @@ class MapObjective {
   /// them: when the one is wrong since the stretches look alike, so are the others.
   double worth_of_loops(const MapHypothesis& choice) const;
 
-  const std::vector<EdgeChoices>& edges_;
+  const std::vector<Edge>& edges_;
   const std::vector<LoopCluster>& clusters_;
   const MapSearchOptions& options_;
   MapScore score_;

@@ -49,8 +49,8 @@ MapHypothesis waited_for(std::future<MapHypothesis>& result, StopSign& stop) {
 }
 
 /// The best of some maps that are assembled of pieces; no more are tried when several in a row are no better.
-MapHypothesis assembled(MapObjective& problem, const std::vector<EdgeChoices>& edges,
-                        const std::vector<LoopCandidate>& candidates, const std::vector<Pose2>& map_of_odometry,
+MapHypothesis assembled(MapObjective& problem, const std::vector<Edge>& edges,
+                        const std::vector<EdgeCandidate>& candidates, const std::vector<Pose2>& map_of_odometry,
                         const MapSearchOptions& options, RunObserver& observer) {
   MapHypothesis best;
   int in_vain = 0;
@@ -68,10 +68,10 @@ MapHypothesis assembled(MapObjective& problem, const std::vector<EdgeChoices>& e
 
 }  // namespace
 
-MapSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views,
-                        const std::vector<EdgeChoices>& edges, const std::vector<LoopCandidate>& candidates,
-                        const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
-                        const MapSearchOptions& options, int threads, RunObserver& observer) {
+MapSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<Edge>& edges,
+                        const std::vector<EdgeCandidate>& candidates, const std::vector<LoopCluster>& clusters,
+                        const VisibilityOptions& visibility, const MapSearchOptions& options, int threads,
+                        RunObserver& observer) {
   // Each has evidence of its own, so that neither depends on how far the other has come.
   MapObjective of_chain(views, edges, clusters, visibility, options, 1);
   MapObjective problem(views, edges, clusters, visibility, options, threads);

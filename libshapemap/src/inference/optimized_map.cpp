@@ -39,7 +39,7 @@ void find_parts(const KeyframeGraph& graph, const std::vector<PoseConstraint>& l
 }
 
 /// For each keyframe, the piece of the chain that it is in, by number.
-std::vector<std::size_t> trusted_submaps(const std::vector<EdgeChoices>& edges) {
+std::vector<std::size_t> trusted_submaps(const std::vector<Edge>& edges) {
   std::vector<std::size_t> submap(edges.size() + 1, 0);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     submap[i + 1] = submap[i] + (edges[i].exists() && edges[i].probability >= kInference.search.trusted ? 0 : 1);
@@ -51,7 +51,7 @@ std::vector<PoseConstraint> loop_constraints(const std::vector<LoopCluster>& clu
                                              const std::vector<std::size_t>& accepted) {
   std::vector<PoseConstraint> constraints;
   for (const std::size_t k : accepted) {
-    const std::vector<LoopCandidate>& members = clusters[k].members;
+    const std::vector<EdgeCandidate>& members = clusters[k].members;
     for (std::size_t m = 0; m < std::min(kInference.objective.members_kept, members.size()); ++m) {
       constraints.push_back(
           {members[m].a, members[m].b, members[m].a_from_b, members[m].covariance, kInference.agreement.match_loss});
@@ -62,13 +62,13 @@ std::vector<PoseConstraint> loop_constraints(const std::vector<LoopCluster>& clu
 
 /// Whether the map is at all what a loop says: robust losses let all others outvote one that is wrong.
 bool is_closed(const LoopCluster& cluster, const std::vector<Pose2>& map_from_keyframe) {
-  const LoopCandidate& best = cluster.members.front();
+  const EdgeCandidate& best = cluster.members.front();
   return agrees(best.a_from_b, inverse(map_from_keyframe[best.a]) * map_from_keyframe[best.b],
                 kInference.agreement.contradicts);
 }
 
 ClosedLoop closed_loop(const KeyframeGraph& graph, const LoopCluster& cluster) {
-  const LoopCandidate& best = cluster.members.front();
+  const EdgeCandidate& best = cluster.members.front();
   return {graph.keyframes[best.a].scan_index, graph.keyframes[best.b].scan_index, best.a_from_b, cluster.strength};
 }
 
@@ -96,14 +96,14 @@ OptimizedMap map_of_odometry(const KeyframeGraph& graph, const RobustOptions& op
   return map;
 }
 
-OptimizedMap optimized_map(const KeyframeGraph& graph, const std::vector<LoopCandidate>& found, Improbable improbable,
+OptimizedMap optimized_map(const KeyframeGraph& graph, const std::vector<EdgeCandidate>& found, Improbable improbable,
                            const RobustOptions& options, const Execution& execution) {
   RunObserver& observer = execution.observer;
   observer.on_stage("whole map");
   OptimizedMap map = map_of_odometry(graph, options);
   const NodeViews views = views_of(graph);
-  const std::vector<EdgeChoices> edges = edge_choices(graph);
-  const std::vector<LoopCandidate> candidates =
+  const std::vector<Edge> edges = edge_choices(graph);
+  const std::vector<EdgeCandidate> candidates =
       without_aliases(found, edges, map.map_from_keyframe, options.map_search.doubt_below);
   const std::vector<LoopCluster> clusters =
       loop_clusters(candidates, map.map_from_keyframe, trusted_submaps(edges), kLoops.clusters);

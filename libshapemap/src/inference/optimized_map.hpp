@@ -45,7 +45,7 @@ OptimizedMap map_of_odometry(const KeyframeGraph& graph, const RobustOptions& op
 
 /// The chain with its loops closed, and all scans aligned to all that see the same. When the observer asks to stop,
 /// with the loops that are closed by then.
-OptimizedMap optimized_map(const KeyframeGraph& graph, const std::vector<LoopCandidate>& candidates,
+OptimizedMap optimized_map(const KeyframeGraph& graph, const std::vector<EdgeCandidate>& candidates,
                            Improbable improbable, const RobustOptions& options, const Execution& execution);
 
 }  // namespace shapemap

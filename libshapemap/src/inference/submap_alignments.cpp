@@ -17,8 +17,8 @@ std::size_t apart(std::size_t i, std::size_t j) { return i < j ? j - i : i - j; 
 }  // namespace
 
 SubmapAlignments::Seen SubmapAlignments::seen_from(std::size_t f, std::size_t joint) const {
-  const PoseConstraint& c = joints_[joint].constraint;
-  const double worth = joints_[joint].worth;
+  const EdgeCandidate& c = joints_[joint];
+  const double worth = c.score;
   if (submap_of_node_[c.a] == f) {
     return {joint, c.a, c.b, submap_from_node_[c.a] * c.a_from_b, submap_from_node_[c.b], worth};
   }
@@ -80,7 +80,8 @@ double SubmapAlignments::strength(const std::vector<Seen>& joints) const {
   return std::min({of_f, of_g, trust_cap_});
 }
 
-std::vector<SubmapAlignment> SubmapAlignments::ways(std::size_t f, const std::vector<std::size_t>& between) const {
+std::vector<SubmapAlignment> SubmapAlignments::ways(std::size_t f, const std::vector<std::size_t>& between,
+                                                    const std::vector<double>& noise) const {
   std::vector<Seen> seen;
   for (const std::size_t joint : between) seen.push_back(seen_from(f, joint));
   std::stable_sort(seen.begin(), seen.end(),
@@ -99,14 +100,13 @@ std::vector<SubmapAlignment> SubmapAlignments::ways(std::size_t f, const std::ve
     for (const Seen& joint : agreeing) way.joints.push_back(joint.joint);
     used.insert(way.joints.begin(), way.joints.end());
     way.f_from_g = mean_of(agreeing);
-    way.gain = strength(agreeing) + joints_[seed.joint].noise;
+    way.gain = strength(agreeing) + (noise.empty() ? 0.0 : noise[seed.joint]);
     found.push_back(std::move(way));
   }
   return found;
 }
 
-bool SubmapAlignments::holds(const SubmapCandidate& joint) const {
-  const PoseConstraint& c = joint.constraint;
+bool SubmapAlignments::holds(const EdgeCandidate& c) const {
   return agrees(c.a_from_b, inverse(submap_from_node_[c.a]) * submap_from_node_[c.b], kLoops.clusters.same);
 }
 

@@ -4,39 +4,44 @@
 #include <cstddef>
 #include <vector>
 
-#include "shapemap/graph/pose_graph.hpp"
+#include "shapemap/graph/edge.hpp"
 
 /// Ways to lay two pieces of a map together, each with a frame of its own.
 namespace shapemap {
 
-/// An alignment of two scans that may be right.
-struct SubmapCandidate {
-  PoseConstraint constraint;
-  double worth = 0.0;  ///< logarithm of odds, limited
-  double noise = 0.0;  ///< what a way gains that starts from it
-};
-
-/// The piece `f` and the piece `g` in one frame, and the joints that say so.
+/// The submap `f` and the submap `g` in one frame, and the candidates that say so.
 struct SubmapAlignment {
   Pose2 f_from_g;
-  std::vector<std::size_t> joints;
+  std::vector<std::size_t> joints;  ///< indices of these candidates
   double gain = 0.0;
 };
 
-/// Joints by index, poses by node, each in the frame of its piece. What all joints of two pieces are worth together is
-/// at most `trust_cap`.
+/// What is known of how the submaps of a graph lie to each other.
+struct SubmapGraph {
+  /// Candidates of edges between nodes of one or of two submaps; the score of each is what it is worth, and limited.
+  const std::vector<EdgeCandidate>& joints;
+  const std::vector<Pose2>& submap_from_node;      ///< each node in the frame of its submap
+  const std::vector<std::size_t>& submap_of_node;  ///< by number
+};
+
+/// Finds the ways to lay two submaps together. What all candidates between two submaps are worth together is at most
+/// `trust_cap`.
 class SubmapAlignments {
  public:
-  SubmapAlignments(const std::vector<SubmapCandidate>& joints, const std::vector<Pose2>& submap_from_node,
-                   const std::vector<std::size_t>& submap_of_node, double trust_cap)
-      : joints_(joints), submap_from_node_(submap_from_node), submap_of_node_(submap_of_node), trust_cap_(trust_cap) {}
+  SubmapAlignments(const SubmapGraph& graph, double trust_cap)
+      : joints_(graph.joints),
+        submap_from_node_(graph.submap_from_node),
+        submap_of_node_(graph.submap_of_node),
+        trust_cap_(trust_cap) {}
 
-  /// What some of `between`, the joints of `f` and another piece, agree on; those of the best joints first, and no more
-  /// than can be right.
-  std::vector<SubmapAlignment> ways(std::size_t f, const std::vector<std::size_t>& between) const;
+  /// Returns what some of `between`, the candidates between `f` and another submap, agree on; what the best of them say
+  /// comes first, and there are no more than can be right. An alignment that starts from a candidate gains what
+  /// `noise` has for it; an empty one has nothing.
+  std::vector<SubmapAlignment> ways(std::size_t f, const std::vector<std::size_t>& between,
+                                    const std::vector<double>& noise = {}) const;
 
-  /// Whether a joint within a piece agrees with it.
-  bool holds(const SubmapCandidate& joint) const;
+  /// Says whether a candidate within a submap agrees with it.
+  bool holds(const EdgeCandidate& joint) const;
 
  private:
   /// A joint as from piece `f` to the other.
@@ -53,7 +58,7 @@ class SubmapAlignments {
   static Pose2 mean_of(const std::vector<Seen>& joints);
   double strength(const std::vector<Seen>& joints) const;
 
-  const std::vector<SubmapCandidate>& joints_;
+  const std::vector<EdgeCandidate>& joints_;
   const std::vector<Pose2>& submap_from_node_;
   const std::vector<std::size_t>& submap_of_node_;
   double trust_cap_;

@@ -35,7 +35,7 @@ double log_odds(double probability) {
 
 class Assembly {
  public:
-  Assembly(const std::vector<EdgeChoices>& edges, std::vector<Pose2> map_of_odometry, MapScore& score,
+  Assembly(const std::vector<Edge>& edges, std::vector<Pose2> map_of_odometry, MapScore& score,
            const MapSearchOptions& options)
       : edges_(edges),
         options_(options),
@@ -54,26 +54,25 @@ class Assembly {
     for (std::size_t n = 0; n < submap_.size(); ++n) nodes_[submap_[n]].push_back(n);
   }
 
-  void add_joints(const std::vector<LoopCandidate>& loops) {
+  void add_joints(const std::vector<EdgeCandidate>& loops) {
     for (std::size_t i = 0; i < edges_.size(); ++i) {
-      const std::vector<EdgeChoices::Candidate>& candidates = edges_[i].candidates;
-      for (const EdgeChoices::Candidate& way : candidates) {
+      const std::vector<EdgeCandidate>& candidates = edges_[i].candidates;
+      for (const EdgeCandidate& way : candidates) {
         const double behind = std::min(0.0, way.score - candidates.front().score);
-        add_joint({i, i + 1, way.a_from_b, way.covariance, kInference.agreement.match_loss},
-                  log_odds(edges_[i].probability * std::exp(behind)));
+        add_joint(way, log_odds(edges_[i].probability * std::exp(behind)));
       }
     }
-    for (const LoopCandidate& loop : loops) {
-      add_joint({loop.a, loop.b, loop.a_from_b, loop.covariance, kInference.agreement.match_loss}, loop.log_odds);
+    for (const EdgeCandidate& loop : loops) {
+      add_joint(loop, loop.score);
     }
   }
 
   void disturb(int variant) {
     if (variant == 0) return;
     std::mt19937_64 random(static_cast<std::uint64_t>(variant));
-    for (SubmapCandidate& joint : joints_) {
+    for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
       const double share = std::ldexp(static_cast<double>(random() >> 11U), -53);
-      joint.noise = kInference.merging.noise * (2.0 * share - 1.0);
+      noise_.push_back(kInference.merging.noise * (2.0 * share - 1.0));
     }
   }
 
@@ -101,12 +100,13 @@ class Assembly {
     return edges_[edge].exists() && edges_[edge].probability >= options_.doubt_below;
   }
 
-  void add_joint(const PoseConstraint& constraint, double odds) {
-    if (log_[constraint.a] != log_[constraint.b]) return;
-    const std::size_t f = submap_[constraint.a];
-    const std::size_t g = submap_[constraint.b];
+  void add_joint(EdgeCandidate joint, double odds) {
+    if (log_[joint.a] != log_[joint.b]) return;
+    const std::size_t f = submap_[joint.a];
+    const std::size_t g = submap_[joint.b];
     (f == g ? within_[f] : between_[{std::min(f, g), std::max(f, g)}]).push_back(joints_.size());
-    joints_.push_back({constraint, worth_among_others(odds), 0.0});
+    joint.score = worth_among_others(odds);
+    joints_.push_back(joint);
   }
 
   double cost_of_steps(const SubmapPair& pair, const Pose2& f_from_g) const {
@@ -129,7 +129,7 @@ class Assembly {
 
   Lead lead_of(const SubmapPair& pair) {
     std::vector<SubmapAlignment> ways =
-        SubmapAlignments(joints_, pose_, submap_, options_.trust_cap).ways(pair.first, between_[pair]);
+        SubmapAlignments({joints_, pose_, submap_}, options_.trust_cap).ways(pair.first, between_[pair], noise_);
     const auto better = [](const SubmapAlignment& one, const SubmapAlignment& other) { return one.gain > other.gain; };
     for (SubmapAlignment& way : ways) way.gain -= cost_of_steps(pair, way.f_from_g);
     std::stable_sort(ways.begin(), ways.end(), better);
@@ -145,11 +145,9 @@ class Assembly {
 
   /// Whether all that is known of how the two pieces lie to each other is of one pair of scans.
   bool is_hinge(const SubmapAlignment& way) const {
-    const PoseConstraint& first = joints_[way.joints.front()].constraint;
-    return std::all_of(way.joints.begin(), way.joints.end(), [&](std::size_t joint) {
-      const PoseConstraint& constraint = joints_[joint].constraint;
-      return constraint.a == first.a && constraint.b == first.b;
-    });
+    const EdgeCandidate& first = joints_[way.joints.front()];
+    return std::all_of(way.joints.begin(), way.joints.end(),
+                       [&](std::size_t joint) { return joints_[joint].a == first.a && joints_[joint].b == first.b; });
   }
 
   void lay_together(const SubmapPair& pair, const SubmapAlignment& way) {
@@ -218,13 +216,16 @@ class Assembly {
     for (const std::size_t n : nodes) {
       poses.push_back(pose_[n]);
       if (n >= edges_.size() || !is_sure(n)) continue;
-      const EdgeChoices::Candidate& edge = edges_[n].candidates.front();
+      const EdgeCandidate& edge = edges_[n].candidates.front();
       add({n, n + 1, edge.a_from_b, edge.covariance, 0.0});
     }
-    const SubmapAlignments submaps(joints_, pose_, submap_, options_.trust_cap);
+    const SubmapAlignments submaps({joints_, pose_, submap_}, options_.trust_cap);
     const std::set<std::size_t> decided(taken.begin(), taken.end());
     for (const std::size_t joint : within_[f]) {
-      if (decided.count(joint) != 0 || submaps.holds(joints_[joint])) add(joints_[joint].constraint);
+      if (decided.count(joint) != 0 || submaps.holds(joints_[joint])) {
+        const EdgeCandidate& c = joints_[joint];
+        add({c.a, c.b, c.a_from_b, c.covariance, kInference.agreement.match_loss});
+      }
     }
     const std::vector<Pose2> solved = solve_pose_graph(poses, constraints, kInference.merging.iterations).map_from_node;
     for (std::size_t k = 0; k < nodes.size(); ++k) pose_[nodes[k]] = solved[k];
@@ -245,16 +246,17 @@ class Assembly {
     }
   }
 
-  const std::vector<EdgeChoices>& edges_;
+  const std::vector<Edge>& edges_;
   const MapSearchOptions& options_;
   std::vector<Pose2> chain_;
   std::vector<Pose2> pose_;  ///< in the frame of the piece
   MapScore& score_;
   double usual_step_m_;
-  std::vector<std::size_t> submap_;              ///< of each node
-  std::vector<std::size_t> log_;                 ///< of each node: alignments of the chain join all of one log
-  std::vector<std::vector<std::size_t>> nodes_;  ///< of each piece, in order
-  std::vector<SubmapCandidate> joints_;
+  std::vector<std::size_t> submap_;               ///< of each node
+  std::vector<std::size_t> log_;                  ///< of each node: alignments of the chain join all of one log
+  std::vector<std::vector<std::size_t>> nodes_;   ///< of each piece, in order
+  std::vector<EdgeCandidate> joints_;             ///< the score of each is what it is worth
+  std::vector<double> noise_;                     ///< of each, if any
   std::vector<std::vector<std::size_t>> within_;  ///< joints of each piece
   std::map<SubmapPair, std::vector<std::size_t>> between_;
   std::map<SubmapPair, Lead> leads_;
@@ -262,7 +264,7 @@ class Assembly {
 
 }  // namespace
 
-std::vector<Pose2> merged_submaps(const std::vector<EdgeChoices>& edges, const std::vector<LoopCandidate>& candidates,
+std::vector<Pose2> merged_submaps(const std::vector<Edge>& edges, const std::vector<EdgeCandidate>& candidates,
                                   std::vector<Pose2> map_of_odometry, MapScore& score, const MapSearchOptions& options,
                                   int variant, RunObserver& observer) {
   if (map_of_odometry.size() < 2) return map_of_odometry;

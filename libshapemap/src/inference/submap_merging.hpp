@@ -17,7 +17,7 @@ namespace shapemap {
 ///
 /// `variant` 0 is that; others disturb what ways gain, each differently and always in the same way, for a wrong
 /// decision early on spoils the rest. Stops early when the observer asks to; the rest then stays as the chain has it.
-std::vector<Pose2> merged_submaps(const std::vector<EdgeChoices>& edges, const std::vector<LoopCandidate>& candidates,
+std::vector<Pose2> merged_submaps(const std::vector<Edge>& edges, const std::vector<EdgeCandidate>& candidates,
                                   std::vector<Pose2> map_of_odometry, MapScore& score, const MapSearchOptions& options,
                                   int variant, RunObserver& observer);
 

@@ -10,7 +10,7 @@
 
 namespace shapemap {
 Localizer::Localizer(const KeyframeGraph& graph, const RobustOptions& options, std::size_t active_component,
-                     std::size_t first, LocalizationState state, const std::vector<LoopCandidate>& loops,
+                     std::size_t first, LocalizationState state, const std::vector<EdgeCandidate>& loops,
                      OptimizedMap& map)
     : graph_(graph),
       options_(options),
@@ -184,16 +184,16 @@ std::vector<std::pair<std::size_t, Pose2>> Localizer::candidates(std::size_t fir
       found.emplace_back(first, map_.map_from_keyframe[first - 1] * pose.ref_from_query);
     }
   }
-  std::vector<const LoopCandidate*> here;
-  for (const LoopCandidate& loop : loops_) {
+  std::vector<const EdgeCandidate*> here;
+  for (const EdgeCandidate& loop : loops_) {
     const bool is_here = first <= loop.b && loop.b < last && loop.a < first;
     if (is_here && map_.component[loop.a] == verification_.active_component() && !redundant_[loop.a])
       here.push_back(&loop);
   }
-  std::stable_sort(here.begin(), here.end(), [](const LoopCandidate* one, const LoopCandidate* other) {
-    return one->log_odds > other->log_odds;
+  std::stable_sort(here.begin(), here.end(), [](const EdgeCandidate* one, const EdgeCandidate* other) {
+    return one->score > other->score;
   });
-  for (const LoopCandidate* loop : here) {
+  for (const EdgeCandidate* loop : here) {
     found.emplace_back(loop->b, map_.map_from_keyframe[loop->a] * loop->a_from_b);
   }
   return found;

@@ -32,7 +32,7 @@ class Localizer {
   /// the robot was sure to be in; `bearings` are those at keyframe `first - 1`. `loops` are places where keyframes may
   /// have been before.
   Localizer(const KeyframeGraph& graph, const RobustOptions& options, std::size_t active_component, std::size_t first,
-            LocalizationState state, const std::vector<LoopCandidate>& loops, OptimizedMap& map);
+            LocalizationState state, const std::vector<EdgeCandidate>& loops, OptimizedMap& map);
 
   /// Along keyframes up to `last`; returns where to go on next time, with the bearings() there: what is not certain yet
   /// is looked at anew then.
@@ -66,7 +66,7 @@ class Localizer {
 
   const KeyframeGraph& graph_;
   const RobustOptions& options_;
-  const std::vector<LoopCandidate>& loops_;
+  const std::vector<EdgeCandidate>& loops_;
   OptimizedMap& map_;
   PlaceVerification verification_;
   std::vector<std::optional<ReplacementKeyframe>> redundant_;

@@ -45,7 +45,7 @@ void RevisitTracker::start(const KeyframeGraph& graph, const OptimizedMap& map, 
   renew(map, graph.keyframes.size() - num_settled);
 }
 
-RevisitTracker::Followed RevisitTracker::follow(const KeyframeGraph& graph, const std::vector<LoopCandidate>& loops) {
+RevisitTracker::Followed RevisitTracker::follow(const KeyframeGraph& graph, const std::vector<EdgeCandidate>& loops) {
   const std::size_t first = settled_.map_from_keyframe.size();
   const std::size_t count = graph.keyframes.size();
   const std::size_t last = count - std::min(count, kLocalization.redundancy.keyframes_in_use);

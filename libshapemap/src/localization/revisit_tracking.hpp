@@ -30,7 +30,7 @@ class RevisitTracker {
     std::vector<std::optional<ReplacementKeyframe>> redundant;  ///< per keyframe: of those that may go
     std::size_t num_followed = 0;  ///< the keyframes after the first so many may still change
   };
-  Followed follow(const KeyframeGraph& graph, const std::vector<LoopCandidate>& loops);
+  Followed follow(const KeyframeGraph& graph, const std::vector<EdgeCandidate>& loops);
 
   /// Whether loops help: the robot does not know where it is in the map.
   bool is_lost() const { return state_.is_lost; }

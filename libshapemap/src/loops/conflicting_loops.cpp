@@ -37,7 +37,7 @@ std::vector<std::vector<ConflictingLoop>> conflicting_loops(const std::vector<Lo
   std::vector<Stretches> stretches(clusters.size());
   std::map<std::size_t, WorthOfClusters> by_node;
   for (std::size_t k = 0; k < clusters.size(); ++k) {
-    for (const LoopCandidate& member : clusters[k].members) {
+    for (const EdgeCandidate& member : clusters[k].members) {
       const double worth = worth_of_member(member);
       keep_best(stretches[k].a, member.a, worth);
       keep_best(stretches[k].b, member.b, worth);

@@ -11,13 +11,15 @@
 namespace shapemap {
 namespace {
 
-EdgeChoices choices_of_edge(const KeyframeGraph& graph, std::size_t i) {
+Edge choices_of_edge(const KeyframeGraph& graph, std::size_t i) {
   const OdometryEdge& edge = graph.edges[i];
-  EdgeChoices result;
+  Edge result;
+  result.a = i;
+  result.b = i + 1;
   for (std::size_t rank = 0; rank < edge.candidates.size(); ++rank) {
     const std::size_t k = ranked_candidate(edge, rank);
     const PoseConstraint constraint = edge_constraint(graph, i, k);
-    result.candidates.push_back({constraint.a_from_b, constraint.covariance, edge.candidates[k].score});
+    result.candidates.push_back({i, i + 1, constraint.a_from_b, constraint.covariance, edge.candidates[k].score});
   }
   if (result.exists()) result.probability = edge_probability(edge);
   for (const MatchCandidate& pose : edge.candidates) {
@@ -39,8 +41,8 @@ std::size_t ranked_candidate(const OdometryEdge& edge, std::size_t rank) {
   return rank <= edge.choice.candidate ? rank - 1 : rank;
 }
 
-std::vector<EdgeChoices> edge_choices(const KeyframeGraph& graph) {
-  std::vector<EdgeChoices> edges;
+std::vector<Edge> edge_choices(const KeyframeGraph& graph) {
+  std::vector<Edge> edges;
   for (std::size_t i = 0; i < graph.edges.size(); ++i) edges.push_back(choices_of_edge(graph, i));
   return edges;
 }
@@ -52,7 +54,7 @@ void find_loops(const KeyframeGraph& graph, std::size_t end, const LoopSearch& b
   search.store = keyframe_store ? &*keyframe_store : nullptr;
   RunObserver& observer = search.execution.observer;
   const NodeViews views = views_of(graph);
-  const auto add = [&](const std::vector<LoopCandidate>& found) {
+  const auto add = [&](const std::vector<EdgeCandidate>& found) {
     known.candidates.insert(known.candidates.end(), found.begin(), found.end());
   };
 

@@ -14,7 +14,7 @@ std::size_t apart(std::size_t i, std::size_t j) { return i < j ? j - i : i - j; 
 
 class Clustering {
  public:
-  Clustering(const std::vector<LoopCandidate>& candidates, const std::vector<Pose2>& map_from_node,
+  Clustering(const std::vector<EdgeCandidate>& candidates, const std::vector<Pose2>& map_from_node,
              const std::vector<std::size_t>& submap_of_node, const ClusterOptions& options)
       : candidates_(candidates),
         map_from_node_(map_from_node),
@@ -31,9 +31,9 @@ class Clustering {
   std::vector<LoopCluster> clusters() {
     const auto window = static_cast<std::size_t>(options_.window);
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      const LoopCandidate& one = candidates_[order_[i]];
+      const EdgeCandidate& one = candidates_[order_[i]];
       for (std::size_t j = i + 1; j < order_.size(); ++j) {
-        const LoopCandidate& other = candidates_[order_[j]];
+        const EdgeCandidate& other = candidates_[order_[j]];
         if (other.b - one.b > window) break;
         if (apart(one.a, other.a) <= window && say_the_same(one, other)) join(order_[i], order_[j]);
       }
@@ -52,7 +52,7 @@ class Clustering {
   }
 
  private:
-  bool say_the_same(const LoopCandidate& one, const LoopCandidate& other) const {
+  bool say_the_same(const EdgeCandidate& one, const EdgeCandidate& other) const {
     if (submap_of_node_[one.a] != submap_of_node_[other.a] || submap_of_node_[one.b] != submap_of_node_[other.b]) {
       return false;
     }
@@ -73,12 +73,12 @@ class Clustering {
 
   static void rate(LoopCluster& cluster) {
     std::stable_sort(cluster.members.begin(), cluster.members.end(),
-                     [](const LoopCandidate& a, const LoopCandidate& b) { return a.log_odds > b.log_odds; });
+                     [](const EdgeCandidate& a, const EdgeCandidate& b) { return a.score > b.score; });
     std::set<std::size_t> of_a;
     std::set<std::size_t> of_b;
     double by_a = 0.0;
     double by_b = 0.0;
-    for (const LoopCandidate& member : cluster.members) {
+    for (const EdgeCandidate& member : cluster.members) {
       const double worth = worth_of_member(member);
       if (of_a.insert(member.a).second) by_a += worth;
       if (of_b.insert(member.b).second) by_b += worth;
@@ -88,7 +88,7 @@ class Clustering {
     cluster.strength = std::min(by_a, by_b);
   }
 
-  const std::vector<LoopCandidate>& candidates_;
+  const std::vector<EdgeCandidate>& candidates_;
   const std::vector<Pose2>& map_from_node_;
   const std::vector<std::size_t>& submap_of_node_;
   const ClusterOptions& options_;
@@ -102,9 +102,9 @@ double worth_among_others(double log_odds) {
   return std::clamp(log_odds + kLoops.members.prior, 0.0, kLoops.members.most);
 }
 
-double worth_of_member(const LoopCandidate& member) { return worth_among_others(member.log_odds); }
+double worth_of_member(const EdgeCandidate& member) { return worth_among_others(member.score); }
 
-std::vector<LoopCluster> loop_clusters(const std::vector<LoopCandidate>& candidates,
+std::vector<LoopCluster> loop_clusters(const std::vector<EdgeCandidate>& candidates,
                                        const std::vector<Pose2>& map_from_node,
                                        const std::vector<std::size_t>& submap_of_node, const ClusterOptions& options) {
   return Clustering(candidates, map_from_node, submap_of_node, options).clusters();

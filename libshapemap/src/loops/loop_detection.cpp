@@ -54,10 +54,10 @@ double log_odds_of_place(double probability, const Eigen::Matrix3d& covariance) 
   return log_odds_of(p) - std::log(std::max(1.0, worst_deviation_m(covariance) / kGraph.steps.held_m));
 }
 
-std::vector<LoopCandidate> aligned(const NodeViews& views, const Pair& pair, const PairSearch& search) {
+std::vector<EdgeCandidate> aligned(const NodeViews& views, const Pair& pair, const PairSearch& search) {
   const std::vector<MatchCandidate> poses =
       find_candidates(*views[pair.a], *views[pair.b], search.options, {pair.a, pair.b, search.kind}, search.store);
-  std::vector<LoopCandidate> found;
+  std::vector<EdgeCandidate> found;
   for (std::size_t k = 0; k < std::min(search.most_poses, poses.size()); ++k) {
     const double margin = k == 0 ? lead_of_first(poses) : poses[k].score - poses[0].score;
     const double probability = match_probability(poses[k], margin);
@@ -70,12 +70,12 @@ std::vector<LoopCandidate> aligned(const NodeViews& views, const Pair& pair, con
 
 /// Adds to `all`. Throws Interrupted when the observer asks to stop.
 void align_all(const NodeViews& views, const std::vector<Pair>& pairs, const PairSearch& search,
-               std::vector<LoopCandidate>& all) {
+               std::vector<EdgeCandidate>& all) {
   RunObserver& observer = search.execution.observer;
   for (std::size_t first = 0; first < pairs.size(); first += kBlock) {
     if (!observer.keep_going()) throw Interrupted();
     const std::size_t count = std::min(kBlock, pairs.size() - first);
-    std::vector<std::vector<LoopCandidate>> found(count);
+    std::vector<std::vector<EdgeCandidate>> found(count);
     parallel_for(count, search.execution.threads,
                  [&](std::size_t i) { found[i] = aligned(views, pairs[first + i], search); });
     for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
@@ -85,7 +85,7 @@ void align_all(const NodeViews& views, const std::vector<Pair>& pairs, const Pai
 
 }  // namespace
 
-std::vector<LoopCandidate> likely_loops(const NodeViews& views, std::size_t first, const LoopSearch& search) {
+std::vector<EdgeCandidate> likely_loops(const NodeViews& views, std::size_t first, const LoopSearch& search) {
   const LoopDetectionOptions& options = search.detection;
   const int threads = search.execution.threads;
   std::vector<PlaceDescriptor> descriptors(views.size());
@@ -109,7 +109,7 @@ std::vector<LoopCandidate> likely_loops(const NodeViews& views, std::size_t firs
                            options.least_probability,
                            search.execution,
                            search.store};
-  std::vector<LoopCandidate> found;
+  std::vector<EdgeCandidate> found;
   try {
     align_all(views, pairs, quickly, found);
   } catch (const Interrupted&) {  // those that were found are of use
@@ -117,7 +117,7 @@ std::vector<LoopCandidate> likely_loops(const NodeViews& views, std::size_t firs
   return found;
 }
 
-std::vector<LoopCandidate> cross_edge_matches(const NodeViews& views, const std::vector<std::size_t>& edges,
+std::vector<EdgeCandidate> cross_edge_matches(const NodeViews& views, const std::vector<std::size_t>& edges,
                                               const LoopSearch& search) {
   const std::size_t nodes = kLoops.detection.cross_edge_nodes;
   std::vector<Pair> pairs;
@@ -132,7 +132,7 @@ std::vector<LoopCandidate> cross_edge_matches(const NodeViews& views, const std:
                               0.0,
                               search.execution,
                               search.store};
-  std::vector<LoopCandidate> found;
+  std::vector<EdgeCandidate> found;
   align_all(views, pairs, thoroughly, found);
   return found;
 }

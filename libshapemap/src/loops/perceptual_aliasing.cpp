@@ -12,7 +12,7 @@ namespace {
 /// How surely the chain knows where its nodes are to each other.
 class SureChain {
  public:
-  SureChain(const std::vector<EdgeChoices>& edges, const std::vector<Pose2>& map_of_odometry, double sure_probability)
+  SureChain(const std::vector<Edge>& edges, const std::vector<Pose2>& map_of_odometry, double sure_probability)
       : map_from_node_(map_of_odometry), submap_(map_of_odometry.size(), 0), variance_m2_(map_of_odometry.size(), 0.0) {
     for (std::size_t i = 0; i < edges.size(); ++i) {
       const bool is_sure = edges[i].exists() && edges[i].probability >= sure_probability;
@@ -22,7 +22,7 @@ class SureChain {
     }
   }
 
-  bool contradicts(const LoopCandidate& one) const {
+  bool contradicts(const EdgeCandidate& one) const {
     const AliasingNumbers& numbers = kLoops.aliasing;
     if (submap_[one.a] != submap_[one.b] || one.b - one.a > numbers.long_chain) return false;
     const double deviation_m = std::sqrt(variance_m2_[one.b] - variance_m2_[one.a] + variance_m2(one.covariance));
@@ -40,8 +40,7 @@ class SureChain {
 
 }  // namespace
 
-std::vector<LoopCandidate> without_aliases(const std::vector<LoopCandidate>& candidates,
-                                           const std::vector<EdgeChoices>& edges,
+std::vector<EdgeCandidate> without_aliases(const std::vector<EdgeCandidate>& candidates, const std::vector<Edge>& edges,
                                            const std::vector<Pose2>& map_of_odometry, double sure_probability) {
   // What is less likely counts for nothing among others anyway.
   const double least_log_odds = -kLoops.members.prior;
@@ -49,20 +48,20 @@ std::vector<LoopCandidate> without_aliases(const std::vector<LoopCandidate>& can
   const std::size_t count = map_of_odometry.size();
   if (edges.size() >= std::max<std::size_t>(count, 1)) throw std::invalid_argument("more links than nodes to join");
   const SureChain chain(edges, map_of_odometry, sure_probability);
-  std::vector<LoopCandidate> kept;
+  std::vector<EdgeCandidate> kept;
   std::vector<double> alike(count, least_log_odds);
-  for (const LoopCandidate& one : candidates) {
+  for (const EdgeCandidate& one : candidates) {
     if (!chain.contradicts(one)) {
       kept.push_back(one);
       continue;
     }
     for (const std::size_t n : {one.a, one.b}) {
       for (std::size_t m = n - std::min(n, near); m < std::min(count, n + near + 1); ++m) {
-        alike[m] = std::max(alike[m], one.log_odds);
+        alike[m] = std::max(alike[m], one.score);
       }
     }
   }
-  for (LoopCandidate& one : kept) one.log_odds -= std::max(alike[one.a], alike[one.b]) - least_log_odds;
+  for (EdgeCandidate& one : kept) one.score -= std::max(alike[one.a], alike[one.b]) - least_log_odds;
   return kept;
 }
 

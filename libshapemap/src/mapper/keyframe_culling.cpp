@@ -45,9 +45,9 @@ class KeyframeCulling {
 
   /// Hypotheses of keyframes that are kept stay; what the map knows of others is said of those that stand for them.
   void renew_loops() {
-    std::vector<LoopCandidate> candidates;
+    std::vector<EdgeCandidate> candidates;
     std::set<std::pair<std::size_t, std::size_t>> pairs;
-    for (const LoopCandidate& loop : known_.candidates) {
+    for (const EdgeCandidate& loop : known_.candidates) {
       if (!is_kept(loop.a) || !is_kept(loop.b)) continue;
       candidates.push_back(loop);
       candidates.back().a = number_[loop.a];

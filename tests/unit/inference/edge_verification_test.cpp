@@ -11,6 +11,11 @@
 namespace shapemap {
 namespace {
 
+/// A candidate that its two scans hold exactly unless a covariance says otherwise.
+EdgeCandidate scored(const Pose2& a_from_b, double score, const Eigen::Matrix3d& covariance = Eigen::Matrix3d::Zero()) {
+  return {0, 0, a_from_b, covariance, score};
+}
+
 using test::HasSameBits;
 using ::testing::Each;
 using ::testing::ElementsAre;
@@ -33,7 +38,11 @@ struct Torn {
       poses.push_back(moved * truth[n]);
     }
     for (const std::size_t edge : tears) {
-      doubts.push_back({edge, {{inverse(poses[edge]) * poses[edge + 1], 1.0}, {true_step(edge) * kTooFar, 1.5}}});
+      Edge doubt;
+      doubt.a = edge;
+      doubt.b = edge + 1;
+      doubt.candidates = {scored(inverse(poses[edge]) * poses[edge + 1], 1.0), scored(true_step(edge) * kTooFar, 1.5)};
+      doubts.push_back(std::move(doubt));
     }
   }
 
@@ -48,7 +57,7 @@ struct Torn {
   test::Views views;
   std::vector<Pose2> poses;
   std::vector<std::size_t> submaps;
-  std::vector<DoubtfulEdge> doubts;
+  std::vector<Edge> doubts;
 };
 
 /// Per link: the candidate that joins, or kCut.
@@ -62,7 +71,7 @@ std::vector<int> choices(const VerifiedMap& verified) {
 /// By itself, the right candidate is the worst.
 TEST(VerifyEdges, TakesWhatAllScansSayAndNotTheTwoAlone) {
   Torn map({6});
-  map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
+  map.doubts[0].candidates.push_back(scored(map.true_step(6), 0.0));
   const VerifiedMap verified = map.verified();
   EXPECT_THAT(choices(verified), ElementsAre(2));
   EXPECT_THAT(verified.submap_of_node, Each(verified.submap_of_node.front()));
@@ -71,9 +80,9 @@ TEST(VerifyEdges, TakesWhatAllScansSayAndNotTheTwoAlone) {
 
 TEST(VerifyEdges, RepairsSeveralOnlyOneOfWhichIsRight) {
   Torn map({3, 8});
-  map.doubts[0].candidates.push_back({map.true_step(3), 0.0});
+  map.doubts[0].candidates.push_back(scored(map.true_step(3), 0.0));
   map.doubts[1].candidates[0].a_from_b = map.true_step(8);  // the map is right here
-  map.doubts[1].candidates.push_back({map.true_step(8) * kTurnedAway, 1.0});
+  map.doubts[1].candidates.push_back(scored(map.true_step(8) * kTurnedAway, 1.0));
   const VerifiedMap verified = map.verified();
   EXPECT_THAT(choices(verified), ElementsAre(2, 0));
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 1e-6);
@@ -82,7 +91,7 @@ TEST(VerifyEdges, RepairsSeveralOnlyOneOfWhichIsRight) {
 /// The scores are those that the two scans give.
 TEST(VerifyEdges, SplitsWhereNoCandidateIsRight) {
   Torn map({6});
-  for (DoubtfulEdge::Candidate& candidate : map.doubts[0].candidates) {
+  for (EdgeCandidate& candidate : map.doubts[0].candidates) {
     candidate.score = candidate_at(*map.views[6], *map.views[7], candidate.a_from_b, {}).score;
   }
   const VerifiedMap verified = map.verified();
@@ -95,7 +104,7 @@ TEST(VerifyEdges, SplitsWhereNoCandidateIsRight) {
 
 TEST(VerifyEdges, JoinsNothingWhenNothingIsProbableEnough) {
   Torn map({6});
-  map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
+  map.doubts[0].candidates.push_back(scored(map.true_step(6), 0.0));
   EXPECT_THAT(choices(map.verified(1.0)), ElementsAre(kCut));
 }
 
@@ -105,7 +114,7 @@ TEST(VerifyEdges, SplitsWhereTwoPlacesFitAlike) {
   const Pose2 away = map.doubts[0].candidates[0].a_from_b;
   std::vector<int> chosen;
   for (double score = 0.0; score < 40.0; score += 0.5) {
-    map.doubts[0].candidates = {{map.true_step(6), 10.0}, {away, score}};
+    map.doubts[0].candidates = {scored(map.true_step(6), 10.0), scored(away, score)};
     const int choice = choices(map.verified()).front();
     if (chosen.empty() || chosen.back() != choice) chosen.push_back(choice);
   }
@@ -119,7 +128,7 @@ TEST(VerifyEdges, IsNearlyRightWhereItSlides) {
     const Eigen::Matrix3d covariance = deviations.cwiseAbs2().asDiagonal();
     const Pose2 one = map.true_step(6) * Pose2{0.5 * off_m.x(), 0.5 * off_m.y(), 0.0};
     const Pose2 other = map.true_step(6) * Pose2{-0.5 * off_m.x(), -0.5 * off_m.y(), 0.0};
-    map.doubts[0].candidates = {{other, 9.0, covariance}, {one, 10.0, covariance}};
+    map.doubts[0].candidates = {scored(other, 9.0, covariance), scored(one, 10.0, covariance)};
     return map.verified().edges[0].probability;
   };
   const Eigen::Vector3d held(0.02, 0.02, 0.01);
@@ -133,8 +142,8 @@ TEST(VerifyEdges, IsNearlyRightWhereItSlides) {
 /// Nearly the same twice leaves no doubt about where the piece is.
 TEST(VerifyEdges, CountsNoNeighbourAsARival) {
   Torn map({6});
-  map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
-  map.doubts[0].candidates.push_back({map.true_step(6) * Pose2{0.05, 0.0, 0.5 * kDegree}, 0.0});
+  map.doubts[0].candidates.push_back(scored(map.true_step(6), 0.0));
+  map.doubts[0].candidates.push_back(scored(map.true_step(6) * Pose2{0.05, 0.0, 0.5 * kDegree}, 0.0));
   const VerifiedMap verified = map.verified();
   ASSERT_GE(choices(verified).front(), 2);
   EXPECT_GT(verified.edges[0].probability, 0.9);
@@ -144,7 +153,7 @@ TEST(VerifyEdges, CountsNoNeighbourAsARival) {
 /// The map's pose is aligned to more than the two scans.
 TEST(VerifyEdges, LeavesThePieceWhereTheMapHasItWhenThatIsTheSamePlace) {
   Torn map({6}, Pose2{0.05, 0.0, 0.5 * kDegree});
-  map.doubts[0].candidates = {{map.doubts[0].candidates[0].a_from_b, 0.0}, {map.true_step(6), 5.0}};
+  map.doubts[0].candidates = {scored(map.doubts[0].candidates[0].a_from_b, 0.0), scored(map.true_step(6), 5.0)};
   const VerifiedMap verified = map.verified();
   EXPECT_THAT(choices(verified), ElementsAre(0));
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.poses), 1e-6);
@@ -152,18 +161,18 @@ TEST(VerifyEdges, LeavesThePieceWhereTheMapHasItWhenThatIsTheSamePlace) {
 
 TEST(VerifyEdges, IsLessSureWithARivalAndWhereAllAreBad) {
   Torn map({6});
-  map.doubts[0].candidates.push_back({map.true_step(6), 10.0});
+  map.doubts[0].candidates.push_back(scored(map.true_step(6), 10.0));
   const double alone = map.verified().edges[0].probability;
   EXPECT_GT(alone, 0.99);
-  map.doubts[0].candidates.push_back({map.true_step(6) * Pose2{0.0, 0.0, kPi}, 12.0});
+  map.doubts[0].candidates.push_back(scored(map.true_step(6) * Pose2{0.0, 0.0, kPi}, 12.0));
   EXPECT_LT(map.verified().edges[0].probability, alone - 0.005);
-  for (DoubtfulEdge::Candidate& candidate : map.doubts[0].candidates) candidate.score = -40.0;
+  for (EdgeCandidate& candidate : map.doubts[0].candidates) candidate.score = -40.0;
   EXPECT_LT(map.verified().edges[0].probability, 0.8) << "it may be none of them";
 }
 
 TEST(VerifyEdges, IsLessSureOfScansThatSeeLittle) {
   Torn map({6});
-  map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
+  map.doubts[0].candidates.push_back(scored(map.true_step(6), 0.0));
   const double sure = map.verified().edges[0].probability;
   map.doubts[0].insufficient_view = 0.3;
   EXPECT_LT(map.verified().edges[0].probability, sure - 0.05);
@@ -176,9 +185,9 @@ struct TornTwice : Torn {
       submaps[n] = submaps[0];
       poses[n] = truth[n];
     }
-    for (DoubtfulEdge& doubt : doubts) {
-      const Pose2 step = true_step(doubt.edge);
-      doubt.candidates = {{inverse(poses[doubt.edge]) * poses[doubt.edge + 1], -9.0}, {step, -9.0}};
+    for (Edge& doubt : doubts) {
+      const Pose2 step = true_step(doubt.a);
+      doubt.candidates = {scored(inverse(poses[doubt.a]) * poses[doubt.a + 1], -9.0), scored(step, -9.0)};
     }
   }
 };
@@ -247,7 +256,7 @@ TEST(VerifyEdges, StopsBetweenTwoLinksThatContradictEachOther) {
 
 TEST(VerifyEdges, IsLessSureOfAPlaceThatTwoScansHoldInNoDirection) {
   Torn map({6});
-  map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
+  map.doubts[0].candidates.push_back(scored(map.true_step(6), 0.0));
   const double held = map.verified().edges[0].probability;
   map.doubts[0].candidates[2].best_deviation_m = 10.0;
   EXPECT_LT(map.verified().edges[0].probability, held - 0.01);
@@ -255,7 +264,7 @@ TEST(VerifyEdges, IsLessSureOfAPlaceThatTwoScansHoldInNoDirection) {
 
 TEST(VerifyEdges, TellsTheBestOfWhatIsNotJoined) {
   Torn map({6});
-  map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
+  map.doubts[0].candidates.push_back(scored(map.true_step(6), 0.0));
   const VerifiedEdge best = map.verified(1.0).edges[0];
   EXPECT_EQ(best.candidate, 2U);
   EXPECT_GT(best.probability, 0.5);
@@ -267,7 +276,7 @@ TEST(VerifyEdges, LeavesAllAsItWasWhenAskedToStop) {
     bool keep_going() override { return false; }
   } impatient;
   Torn map({6});
-  map.doubts[0].candidates.push_back({map.true_step(6), 0.0});
+  map.doubts[0].candidates.push_back(scored(map.true_step(6), 0.0));
   const VerifiedMap verified = verify_edges(map.views, map.poses, map.submaps, map.doubts, {}, 0.7, 1, impatient);
   EXPECT_THAT(choices(verified), ElementsAre(0));
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.poses), 1e-6);
@@ -275,7 +284,7 @@ TEST(VerifyEdges, LeavesAllAsItWasWhenAskedToStop) {
 
 TEST(VerifyEdges, IsTheSameToTheBitForAnyNumberOfThreads) {
   Torn map({3, 8});
-  for (DoubtfulEdge& doubt : map.doubts) doubt.candidates.push_back({map.true_step(doubt.edge), 0.0});
+  for (Edge& doubt : map.doubts) doubt.candidates.push_back(scored(map.true_step(doubt.a), 0.0));
   const VerifiedMap one = map.verified(0.7, 1);
   const VerifiedMap three = map.verified(0.7, 3);
   EXPECT_EQ(choices(one), choices(three));

@@ -23,8 +23,8 @@ struct Ring {
   MapObjective problem() { return {views, edges, clusters, {}, options, 1}; }
 
   void spoil(std::size_t edge, bool keep_right) {
-    std::vector<EdgeChoices::Candidate>& candidates = edges[edge].candidates;
-    const EdgeChoices::Candidate right = candidates[0];
+    std::vector<EdgeCandidate>& candidates = edges[edge].candidates;
+    const EdgeCandidate right = candidates[0];
     candidates[0].a_from_b = right.a_from_b * Pose2{0.3, -0.5, 70 * kDegree};
     candidates[0].score = 1.0;
     if (keep_right) candidates.push_back(right);
@@ -33,7 +33,7 @@ struct Ring {
 
   std::vector<Pose2> truth = test::ring_walk(kRingLap + 8, 2);
   test::Views views = test::views_along(test::ring_world(1), truth);
-  std::vector<EdgeChoices> edges;
+  std::vector<Edge> edges;
   std::vector<LoopCluster> clusters{test::cluster_of(truth, {3, 28, 5}, 18.0, {2.0, 0.0, 0.0}),
                                     test::cluster_of(truth, {0, kRingLap, 8}, 12.0)};
   MapSearchOptions options;

@@ -47,7 +47,7 @@ struct Ring {
 
   std::vector<Pose2> truth = test::ring_walk(kRingLap + kAgain, 2);
   test::Views views = test::views_along(test::ring_world(1), truth);
-  std::vector<EdgeChoices> edges;
+  std::vector<Edge> edges;
 };
 
 void expect_same_bits(const MapSolution& a, const MapSolution& b) {
@@ -97,7 +97,7 @@ TEST(CloseLoops, RefusesALoopThatIsWrongHoweverStrong) {
 /// The graph could bear it; the scans speak against it.
 TEST(CloseLoops, RefusesALoopThatPullsScansThatAgreeApart) {
   Ring ring(0.0);
-  for (EdgeChoices& edge : ring.edges) edge.candidates[0].covariance = test::covariance_of(0.3, 10 * kDegree);
+  for (Edge& edge : ring.edges) edge.candidates[0].covariance = test::covariance_of(0.3, 10 * kDegree);
   const auto shifted_by = [&](double shift_m) {
     return test::cluster_of(ring.truth, {0, kRingLap, kAgain}, 12.0, {shift_m, 0.0, 0.0});
   };
@@ -113,10 +113,11 @@ TEST(CloseLoops, LeavesAloneWhatIsTooWeak) {
 TEST(CloseLoops, TakesTheOtherAlternativeOfALinkThatLoopsContradict) {
   Ring ring(0.1 * kDegree);
   constexpr std::size_t kBad = 20;
-  EdgeChoices& bad = ring.edges[kBad];
+  Edge& bad = ring.edges[kBad];
   const Pose2 right = bad.candidates[0].a_from_b;
-  bad.candidates = {{right * Pose2{0.3, -0.5, 70 * kDegree}, test::covariance_of(0.03, 1 * kDegree), 1.0},
-                    {right, test::covariance_of(0.03, 1 * kDegree), 0.0}};
+  bad.candidates = {
+      {kBad, kBad + 1, right * Pose2{0.3, -0.5, 70 * kDegree}, test::covariance_of(0.03, 1 * kDegree), 1.0},
+      {kBad, kBad + 1, right, test::covariance_of(0.03, 1 * kDegree), 0.0}};
   bad.probability = 0.4;
   const MapSolution solution = ring.closed({ring.again(12.0)});
   EXPECT_THAT(solution.accepted, ElementsAre(0));
@@ -127,7 +128,7 @@ TEST(CloseLoops, TakesTheOtherAlternativeOfALinkThatLoopsContradict) {
 TEST(CloseLoops, CutsALinkThatIsWrongWithoutAnAlternative) {
   Ring ring(0.05 * kDegree);
   constexpr std::size_t kBad = 20;
-  EdgeChoices& bad = ring.edges[kBad];
+  Edge& bad = ring.edges[kBad];
   bad.candidates[0].a_from_b = bad.candidates[0].a_from_b * Pose2{0.3, -0.5, 70 * kDegree};
   bad.probability = 0.3;
   const MapSolution solution = ring.closed({ring.again(16.0)});
@@ -142,7 +143,7 @@ TEST(CloseLoops, CutsALinkThatIsWrongWithoutAnAlternative) {
 void turn_node(Ring& ring, std::size_t node) {
   const Pose2 turned{0.0, 0.0, kPi};
   for (const std::size_t i : {node - 1, node}) {
-    EdgeChoices& edge = ring.edges[i];
+    Edge& edge = ring.edges[i];
     const Pose2 right = edge.candidates[0].a_from_b;
     edge.candidates.push_back(edge.candidates[0]);
     edge.candidates[0].a_from_b = i < node ? right * turned : turned * right;
@@ -169,11 +170,11 @@ TEST(CloseLoops, IsAtLeastAsGoodWithHypothesesAsWithout) {
   for (std::size_t bad = 8; bad <= 40; bad += 8) {
     Ring ring(0.1 * kDegree);
     turn_node(ring, bad + 4);
-    EdgeChoices::Candidate& wrong = ring.edges[bad].candidates[0];
+    EdgeCandidate& wrong = ring.edges[bad].candidates[0];
     wrong.a_from_b = wrong.a_from_b * Pose2{0.3, -0.5, 70 * kDegree};
     ring.edges[bad].probability = 0.3;
     const std::vector<LoopCluster> clusters{test::cluster_of(ring.truth, {bad - 1, bad + 1, 2}, 8.0)};
-    const auto closed = [&](const std::vector<LoopCandidate>& candidates) {
+    const auto closed = [&](const std::vector<EdgeCandidate>& candidates) {
       return close_loops(ring.views, ring.edges, candidates, clusters, {}, {}, 1, nobody);
     };
     const MapSolution with = closed(clusters[0].members);
@@ -204,7 +205,7 @@ struct TwoWalks {
   static constexpr std::size_t kFirst = 16;
   std::vector<Pose2> truth = test::ring_walk(kFirst, 5);
   test::Views views = test::views_along(test::ring_world(1), truth);
-  std::vector<EdgeChoices> edges;
+  std::vector<Edge> edges;
 };
 
 TEST(CloseLoops, JoinsTwoPiecesOfOneWorld) {
@@ -240,7 +241,7 @@ TEST(CloseLoops, DoesNotJoinPiecesThatTwoLoopsWouldJoinDifferently) {
   const TwoWalks walks(true);
   LoopCluster right = test::cluster_of(walks.truth, {3, TwoWalks::kFirst, 8}, 24.0);
   LoopCluster rival = right;
-  for (LoopCandidate& member : rival.members) member.a_from_b = member.a_from_b * Pose2{0.0, 0.0, kPi};
+  for (EdgeCandidate& member : rival.members) member.a_from_b = member.a_from_b * Pose2{0.0, 0.0, kPi};
   rival.strength = 11.0;
   EXPECT_THAT(walks.closed({right, rival}).accepted, ElementsAre(0)) << "less than half as strong";
   rival.strength = 20.0;

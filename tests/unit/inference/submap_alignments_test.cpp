@@ -93,32 +93,30 @@ struct TwoPieces {
     const std::size_t i = any_of(of_f);
     const std::size_t j = any_of(of_g);
     const Pose2 i_from_j = inverse(pose[i]) * said_f_from_g * pose[j] * test::random_pose(rng, error, error);
-    SubmapCandidate joint;
-    joint.constraint = rng() % 2 == 0 ? PoseConstraint{i, j, i_from_j, Eigen::Matrix3d::Identity(), 0.0}
-                                      : PoseConstraint{j, i, inverse(i_from_j), Eigen::Matrix3d::Identity(), 0.0};
-    joint.worth = worth;
-    joint.noise = noise;
-    joints.push_back(joint);
+    const Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+    joints.push_back(rng() % 2 == 0 ? EdgeCandidate{i, j, i_from_j, covariance, worth}
+                                    : EdgeCandidate{j, i, inverse(i_from_j), covariance, worth});
+    noises.push_back(noise);
     return joints.size() - 1;
   }
 
   double any_worth() { return std::uniform_real_distribution<double>(0.0, 6.0)(rng); }
 
   /// Node of `f`, node of `g`, and how the one lies to the other.
-  PoseConstraint from_f(std::size_t joint) const {
-    const PoseConstraint& c = joints[joint].constraint;
+  EdgeCandidate from_f(std::size_t joint) const {
+    const EdgeCandidate& c = joints[joint];
     if (submap[c.a] == kF) return c;
-    return {c.b, c.a, inverse(c.a_from_b), c.covariance, c.loss_scale};
+    return {c.b, c.a, inverse(c.a_from_b), c.covariance, c.score};
   }
   Pose2 said_by(std::size_t joint) const {
-    const PoseConstraint c = from_f(joint);
+    const EdgeCandidate c = from_f(joint);
     return pose[c.a] * c.a_from_b * inverse(pose[c.b]);
   }
 
   std::vector<SubmapAlignment> ways(std::size_t piece_first = kF, double trust_cap = 20.0) const {
     Nodes all(joints.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
-    return SubmapAlignments(joints, pose, submap, trust_cap).ways(piece_first, all);
+    return SubmapAlignments({joints, pose, submap}, trust_cap).ways(piece_first, all, noises);
   }
 
   std::mt19937 rng;
@@ -127,7 +125,8 @@ struct TwoPieces {
   Nodes of_g;
   std::vector<Pose2> pose;
   Nodes submap;
-  std::vector<SubmapCandidate> joints;
+  std::vector<EdgeCandidate> joints;
+  std::vector<double> noises;  ///< of each
 };
 
 TEST(Ways, ThatAllJointsSayAreOneWayThere) {
@@ -180,8 +179,8 @@ std::size_t apart(std::size_t i, std::size_t j) { return std::max(i, j) - std::m
 
 /// By where the node of `g` comes to lie in `f`: the seed's pose may drift, on the way along both pieces.
 bool says_the_same(const TwoPieces& submaps, std::size_t seed, std::size_t joint) {
-  const PoseConstraint s = submaps.from_f(seed);
-  const PoseConstraint c = submaps.from_f(joint);
+  const EdgeCandidate s = submaps.from_f(seed);
+  const EdgeCandidate c = submaps.from_f(joint);
   const Pose2 by_seed = submaps.said_by(seed) * submaps.pose[c.b];
   const Pose2 by_joint = submaps.pose[c.a] * c.a_from_b;
   const auto nodes = static_cast<double>(apart(c.a, s.a) + apart(c.b, s.b));
@@ -196,8 +195,8 @@ double strength_of(const TwoPieces& submaps, const Nodes& joints, double trust_c
     for (const std::size_t n : of_f ? submaps.of_f : submaps.of_g) {
       double best = 0.0;
       for (const std::size_t joint : joints) {
-        const PoseConstraint c = submaps.from_f(joint);
-        if ((of_f ? c.a : c.b) == n) best = std::max(best, submaps.joints[joint].worth);
+        const EdgeCandidate c = submaps.from_f(joint);
+        if ((of_f ? c.a : c.b) == n) best = std::max(best, submaps.joints[joint].score);
       }
       sums[of_f ? 0 : 1] += best;
     }
@@ -230,7 +229,7 @@ TEST(Ways, HoldAllThatAgreesWithTheSurestThatIsLeft) {
     for (const SubmapAlignment& way : submaps.ways(kF, trust_cap)) {
       ASSERT_FALSE(left.empty()) << seed;
       const std::size_t surest = *std::max_element(left.begin(), left.end(), [&](std::size_t i, std::size_t j) {
-        return submaps.joints[i].worth < submaps.joints[j].worth;
+        return submaps.joints[i].score < submaps.joints[j].score;
       });
       Nodes expected;
       for (std::size_t k = 0; k < submaps.joints.size(); ++k) {
@@ -239,7 +238,7 @@ TEST(Ways, HoldAllThatAgreesWithTheSurestThatIsLeft) {
         num_shared += left.erase(k) == 0 ? 1U : 0U;
       }
       EXPECT_THAT(way.joints, testing::UnorderedElementsAreArray(expected)) << seed;
-      EXPECT_NEAR(way.gain, strength_of(submaps, way.joints, trust_cap) + submaps.joints[surest].noise, 1e-9) << seed;
+      EXPECT_NEAR(way.gain, strength_of(submaps, way.joints, trust_cap) + submaps.noises[surest], 1e-9) << seed;
       ++num_ways;
     }
     EXPECT_THAT(left, IsEmpty()) << "each joint is part of a way";
@@ -252,14 +251,14 @@ TEST(Ways, HoldAllThatAgreesWithTheSurestThatIsLeft) {
 double cost_of(const TwoPieces& submaps, const Nodes& joints, const Pose2& f_from_g) {
   double cost = 0.0;
   for (const std::size_t joint : joints) {
-    const PoseConstraint c = submaps.from_f(joint);
+    const EdgeCandidate c = submaps.from_f(joint);
     const Pose2 expected = f_from_g * submaps.pose[c.b];
     const Pose2 said = submaps.pose[c.a] * c.a_from_b;
     for (const Point2& point : {Point2(0.0, 0.0), Point2(2.0, 0.0), Point2(-2.0, 0.0)}) {
       const double share = point.x() == 0.0 ? 1.0 : 0.5;
       const Point2 turned = rotate(point, said.theta_rad) - rotate(point, expected.theta_rad);
       const Point2 off = point.x() == 0.0 ? Point2(said.translation() - expected.translation()) : turned;
-      cost += share * (submaps.joints[joint].worth + 0.1) * off.squaredNorm();
+      cost += share * (submaps.joints[joint].score + 0.1) * off.squaredNorm();
     }
   }
   return cost;
@@ -285,9 +284,8 @@ TEST(Holds, WhatIsNearEnoughToThePiece) {
   const std::size_t a = submaps.of_f[2];
   const std::size_t b = submaps.of_f[7];
   const auto holds = [&](const Pose2& off) {
-    const SubmapCandidate joint{
-        {a, b, inverse(submaps.pose[a]) * submaps.pose[b] * off, Eigen::Matrix3d::Identity(), 0.0}, 1.0, 0};
-    return SubmapAlignments(submaps.joints, submaps.pose, submaps.submap, 20.0).holds(joint);
+    const EdgeCandidate joint{a, b, inverse(submaps.pose[a]) * submaps.pose[b] * off, Eigen::Matrix3d::Identity(), 1.0};
+    return SubmapAlignments({submaps.joints, submaps.pose, submaps.submap}, 20.0).holds(joint);
   };
   EXPECT_TRUE(holds({}));
   EXPECT_TRUE(holds({0.0, 0.39, 0.0}));

@@ -27,8 +27,8 @@ struct Walk {
 
   /// A wrong alternative comes first; the right one is as good as never, or comes second.
   void spoil(std::size_t edge, const Pose2& wrong, bool keep_right = true) {
-    std::vector<EdgeChoices::Candidate>& candidates = edges[edge].candidates;
-    EdgeChoices::Candidate first = candidates.front();
+    std::vector<EdgeCandidate>& candidates = edges[edge].candidates;
+    EdgeCandidate first = candidates.front();
     first.a_from_b = wrong;
     first.score = 1.0;
     if (!keep_right) candidates.clear();
@@ -42,12 +42,12 @@ struct Walk {
     spoil(node, inverse(kTurned) * edges[node].candidates[0].a_from_b);
   }
 
-  std::vector<Pose2> assembled(const std::vector<LoopCandidate>& candidates, RunObserver& observer, int variant = 0,
+  std::vector<Pose2> assembled(const std::vector<EdgeCandidate>& candidates, RunObserver& observer, int variant = 0,
                                int threads = 1) const {
     MapScore score(views, {}, threads);
     return merged_submaps(edges, candidates, chain(), score, {}, variant, observer);
   }
-  std::vector<Pose2> assembled(const std::vector<LoopCandidate>& candidates = {}, int variant = 0,
+  std::vector<Pose2> assembled(const std::vector<EdgeCandidate>& candidates = {}, int variant = 0,
                                int threads = 1) const {
     RunObserver nobody;
     return assembled(candidates, nobody, variant, threads);
@@ -56,7 +56,7 @@ struct Walk {
   /// By first alternatives; what belongs to another log is far away.
   std::vector<Pose2> chain() const {
     std::vector<Pose2> poses{{}};
-    for (const EdgeChoices& edge : edges) {
+    for (const Edge& edge : edges) {
       const Pose2 step = edge.exists() ? edge.candidates[0].a_from_b : Pose2{1e4, 0.0, 0.0};
       poses.push_back(poses.back() * step);
     }
@@ -66,8 +66,8 @@ struct Walk {
 
   std::vector<Pose2> truth;
   test::Views views = test::views_along(test::ring_world(1), truth);
-  std::vector<EdgeChoices> edges;
-  std::vector<EdgeChoices> right;
+  std::vector<Edge> edges;
+  std::vector<Edge> right;
 };
 
 /// As one lies to the other, whatever the frame.
@@ -102,7 +102,7 @@ std::vector<Pose2> best_of_all_choices(const Walk& walk, const std::vector<std::
   for (std::size_t choice = 0; choice < std::size_t{1} << doubtful.size(); ++choice) {
     Walk chosen = walk;
     for (std::size_t k = 0; k < doubtful.size(); ++k) {
-      std::vector<EdgeChoices::Candidate>& candidates = chosen.edges[doubtful[k]].candidates;
+      std::vector<EdgeCandidate>& candidates = chosen.edges[doubtful[k]].candidates;
       if ((choice >> k & 1U) != 0) std::swap(candidates[0], candidates[1]);
     }
     const double worth = walk.worth(chosen.chain());
@@ -131,11 +131,11 @@ TEST(AssembledMap, IsTheBestOfAllChoices) {
 TEST(AssembledMap, BridgesALinkThatHasNoRightAlternative) {
   Walk walk;
   walk.spoil(20, walk.edges[20].candidates[0].a_from_b * Pose2{0.3, -0.5, 70 * kDegree}, false);
-  const std::vector<LoopCandidate> bridge = test::cluster_of(walk.truth, {18, 21, 3}, 0.0).members;
+  const std::vector<EdgeCandidate> bridge = test::cluster_of(walk.truth, {18, 21, 3}, 0.0).members;
   EXPECT_GT(test::worst_off_m(walk.assembled(), walk.truth), 5.0);
   EXPECT_LT(test::worst_off_m(walk.assembled(bridge), test::dead_reckoning(walk.right)), 1.0);
-  std::vector<LoopCandidate> wrong = bridge;
-  for (LoopCandidate& candidate : wrong) candidate.a_from_b = candidate.a_from_b * kTurned;
+  std::vector<EdgeCandidate> wrong = bridge;
+  for (EdgeCandidate& candidate : wrong) candidate.a_from_b = candidate.a_from_b * kTurned;
   wrong.insert(wrong.end(), bridge.begin(), bridge.end());
   EXPECT_LT(test::worst_off_m(walk.assembled(wrong), test::dead_reckoning(walk.right)), 1.0) << "the scans tell";
 }
@@ -146,7 +146,7 @@ TEST(AssembledMap, IsBentToWhatItsHypothesesSay) {
   for (const double drift_deg : {0.1, 0.15}) {
     Walk walk(drift_deg * kDegree);
     walk.edges[30].probability = 0.6;
-    const std::vector<LoopCandidate> again = test::cluster_of(walk.truth, {0, kRingLap, 8}, 0.0).members;
+    const std::vector<EdgeCandidate> again = test::cluster_of(walk.truth, {0, kRingLap, 8}, 0.0).members;
     ASSERT_GT(test::worst_off_m(walk.assembled(), walk.truth), 0.5);
     const std::vector<Pose2> map = walk.assembled(again);
     EXPECT_LT(test::worst_off_m(map, walk.truth), 0.2);
@@ -161,8 +161,8 @@ TEST(AssembledMap, NeverLaysPiecesOfDifferentLogsTogether) {
   walk.edges[kLast] = {};
   walk.turn_node(10);
   walk.turn_node(40);
-  std::vector<LoopCandidate> joins = test::cluster_of(walk.truth, {0, kRingLap, 8}, 0.0).members;
-  const std::vector<LoopCandidate> more = test::cluster_of(walk.truth, {kLast - 3, kLast + 1, 4}, 0.0).members;
+  std::vector<EdgeCandidate> joins = test::cluster_of(walk.truth, {0, kRingLap, 8}, 0.0).members;
+  const std::vector<EdgeCandidate> more = test::cluster_of(walk.truth, {kLast - 3, kLast + 1, 4}, 0.0).members;
   joins.insert(joins.end(), more.begin(), more.end());
   const std::vector<Pose2> map = walk.assembled(joins);
   EXPECT_THAT(inverse(map[kLast]) * map[kLast + 1], IsNearPose((Pose2{1e4, 0.0, 0.0}), 1e-6, 1e-9));
@@ -176,7 +176,7 @@ TEST(AssembledMap, OfAVariantIsTheSameToTheBitForAnyNumberOfThreads) {
   Walk walk;
   walk.turn_node(20);
   walk.turn_node(40);
-  const std::vector<LoopCandidate> again = test::cluster_of(walk.truth, {0, kRingLap, 8}, 0.0).members;
+  const std::vector<EdgeCandidate> again = test::cluster_of(walk.truth, {0, kRingLap, 8}, 0.0).members;
   for (int variant = 0; variant < 4; ++variant) {
     const std::vector<Pose2> map = walk.assembled(again, variant);
     for (const int threads : {1, 3}) {

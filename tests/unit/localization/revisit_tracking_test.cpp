@@ -42,7 +42,7 @@ const MappingOptions& quick() {
 
 /// What is followed after `num_settled` keyframes, whose part of the map is right.
 RevisitTracker::Followed followed(const Laps& laps, const KnownGraph& known,
-                                  const std::vector<LoopCandidate>& loops = {}, std::size_t num_settled = kSettled) {
+                                  const std::vector<EdgeCandidate>& loops = {}, std::size_t num_settled = kSettled) {
   const MappingOptions options = quick();
   RevisitTracker revisits(options.robust);
   OptimizedMap map = known.map;
@@ -175,7 +175,7 @@ TEST(RevisitTracker, KnowNothingAgainAfterAWrongLink) {
 }
 
 /// A hypothesis that keyframe `b` is where it was a lap ago.
-LoopCandidate loop_to(const Laps& laps, std::size_t b) {
+EdgeCandidate loop_to(const Laps& laps, std::size_t b) {
   const std::size_t a = b - test::kRingLap;
   return {a, b, inverse(laps.truth[a]) * laps.truth[b], Eigen::Matrix3d::Identity() * 1e-4, 2.0};
 }
@@ -184,9 +184,9 @@ TEST(RevisitTracker, FindTheWayAgainWhereALoopPutsIt) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
   const KnownGraph known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
-  LoopCandidate wrong = loop_to(laps, kWrong + 7);
+  EdgeCandidate wrong = loop_to(laps, kWrong + 7);
   wrong.a -= 5;
-  wrong.log_odds = 3.0;
+  wrong.score = 3.0;
   const RevisitTracker::Followed result = followed(laps, known, {wrong, loop_to(laps, kWrong + 9)});
   EXPECT_EQ(result.num_followed, laps.truth.size() - kLocalization.redundancy.keyframes_in_use);
   EXPECT_GE(num_known(result) + 2, num_known(followed(laps, KnownGraph(laps))));  // the two at the link stay
@@ -200,7 +200,7 @@ TEST(RevisitTracker, FindTheWayAgainWhereALoopPutsIt) {
 TEST(RevisitTracker, FindNoWayWhereALoopIsWrong) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
-  LoopCandidate wrong = loop_to(laps, kWrong + 9);
+  EdgeCandidate wrong = loop_to(laps, kWrong + 9);
   wrong.a -= 6;
   const RevisitTracker::Followed result = followed(laps, doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}), {wrong});
   EXPECT_EQ(result.num_followed, kWrong);

@@ -50,13 +50,13 @@ double by_each_node(const LoopCluster& one, const LoopCluster& other) {
   double strongest = 0.0;
   for (const bool later : {false, true}) {
     std::vector<std::size_t> nodes;
-    for (const LoopCandidate& member : one.members) nodes.push_back(later ? member.b : member.a);
+    for (const EdgeCandidate& member : one.members) nodes.push_back(later ? member.b : member.a);
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
     double sum = 0.0;
     for (const std::size_t n : nodes) {
       double best = 0.0;
-      for (const LoopCandidate& member : other.members) {
+      for (const EdgeCandidate& member : other.members) {
         if (member.a == n || member.b == n) best = std::max(best, worth_of_member(member));
       }
       sum += best;

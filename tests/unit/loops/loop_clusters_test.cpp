@@ -17,11 +17,11 @@ namespace {
 
 using Key = std::tuple<std::size_t, std::size_t, double>;  // no two hypotheses of a test have the same log odds
 
-Key key_of(const LoopCandidate& candidate) { return {candidate.a, candidate.b, candidate.log_odds}; }
+Key key_of(const EdgeCandidate& candidate) { return {candidate.a, candidate.b, candidate.score}; }
 
 std::set<Key> keys_of(const LoopCluster& cluster) {
   std::set<Key> keys;
-  for (const LoopCandidate& member : cluster.members) keys.insert(key_of(member));
+  for (const EdgeCandidate& member : cluster.members) keys.insert(key_of(member));
   return keys;
 }
 
@@ -39,14 +39,14 @@ struct Way {
   }
 
   /// As if the map were bent between the two stretches by `bend`, with an error of its own for each.
-  LoopCandidate candidate(std::size_t a, std::size_t b, const Pose2& bend, double error) {
+  EdgeCandidate candidate(std::size_t a, std::size_t b, const Pose2& bend, double error) {
     std::uniform_real_distribution<double> log_odds(-3.0, 6.0);
     const Pose2 a_from_b = inverse(poses[a]) * bend * poses[b] * test::random_pose(rng, error, error);
     return {a, b, a_from_b, Eigen::Matrix3d::Identity(), log_odds(rng)};
   }
 
-  std::vector<LoopCandidate> planted(const Pose2& bend) {
-    std::vector<LoopCandidate> candidates;
+  std::vector<EdgeCandidate> planted(const Pose2& bend) {
+    std::vector<EdgeCandidate> candidates;
     for (std::size_t k = 0; k < 10; ++k) candidates.push_back(candidate(5 + k, 40 + k, bend, 0.01));
     return candidates;
   }
@@ -60,9 +60,9 @@ TEST(LoopClusters, HoldWhatIsConsistentAndLeaveOutWhatIsNot) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     Way way(seed);
     const Pose2 bend = test::random_pose(way.rng, 3.0, kPi);
-    std::vector<LoopCandidate> candidates = way.planted(bend);
+    std::vector<EdgeCandidate> candidates = way.planted(bend);
     std::set<Key> expected;
-    for (const LoopCandidate& candidate : candidates) expected.insert(key_of(candidate));
+    for (const EdgeCandidate& candidate : candidates) expected.insert(key_of(candidate));
     for (std::size_t k = 0; k < 10; ++k) {  // none agrees with any other
       const Pose2 wrong = bend * Pose2{2.0 + 3.0 * static_cast<double>(k), 0.0, 0.0};
       candidates.push_back(way.candidate(5 + k, 40 + k, wrong, 0.0));
@@ -73,13 +73,13 @@ TEST(LoopClusters, HoldWhatIsConsistentAndLeaveOutWhatIsNot) {
     EXPECT_EQ(clusters[0].num_a, 10U);
     EXPECT_EQ(clusters[0].num_b, 10U);
     EXPECT_TRUE(std::is_sorted(clusters[0].members.begin(), clusters[0].members.end(),
-                               [](const LoopCandidate& x, const LoopCandidate& y) { return x.log_odds > y.log_odds; }));
+                               [](const EdgeCandidate& x, const EdgeCandidate& y) { return x.score > y.score; }));
   }
 }
 
 TEST(LoopClusters, DoNotReachFromOnePieceToTheNext) {
   Way way(1);
-  const std::vector<LoopCandidate> candidates = way.planted({1.0, 0.0, 0.5});
+  const std::vector<EdgeCandidate> candidates = way.planted({1.0, 0.0, 0.5});
   ASSERT_EQ(loop_clusters(candidates, way.poses, way.submaps, {}).size(), 1U);
   const auto cut_at = [&](std::size_t node) {
     std::vector<std::size_t> submaps(way.poses.size(), 0);
@@ -97,7 +97,7 @@ TEST(LoopClusters, DoNotReachFromOnePieceToTheNext) {
 
 TEST(LoopClusters, NeedSeveralNodesOnEitherSide) {
   Way way(2);
-  std::vector<LoopCandidate> candidates;
+  std::vector<EdgeCandidate> candidates;
   for (std::size_t k = 0; k < 4; ++k) candidates.push_back(way.candidate(5, 40 + k, {}, 0.0));
   EXPECT_TRUE(loop_clusters(candidates, way.poses, way.submaps, {}).empty()) << "all of it hangs on one scan";
   candidates.push_back(way.candidate(6, 41, {}, 0.0));
@@ -109,12 +109,12 @@ TEST(LoopClusters, NeedSeveralNodesOnEitherSide) {
 }
 
 /// Enough of them near enough to each other that all cases come up.
-std::vector<LoopCandidate> random_candidates(Way& way, std::size_t count) {
+std::vector<EdgeCandidate> random_candidates(Way& way, std::size_t count) {
   const std::vector<Pose2> bends{{}, {0.3, 0.0, 0.0}, {0.0, 0.0, 0.08}, {5.0, 1.0, 1.0}};
   std::uniform_int_distribution<std::size_t> first(0, 20);
   std::uniform_int_distribution<std::size_t> last(35, 59);
   std::uniform_int_distribution<std::size_t> any(0, bends.size() - 1);
-  std::vector<LoopCandidate> candidates;
+  std::vector<EdgeCandidate> candidates;
   while (candidates.size() < count) {
     const std::size_t a = first(way.rng);
     const std::size_t b = last(way.rng);
@@ -125,9 +125,9 @@ std::vector<LoopCandidate> random_candidates(Way& way, std::size_t count) {
 
 /// Whether two hypotheses support each other: of neighbouring nodes, and by way of the first of the later ones they say
 /// the same.
-bool support(const Way& way, const LoopCandidate& x, const LoopCandidate& y, const ClusterOptions& options) {
-  const LoopCandidate& one = x.b <= y.b ? x : y;
-  const LoopCandidate& other = x.b <= y.b ? y : x;
+bool support(const Way& way, const EdgeCandidate& x, const EdgeCandidate& y, const ClusterOptions& options) {
+  const EdgeCandidate& one = x.b <= y.b ? x : y;
+  const EdgeCandidate& other = x.b <= y.b ? y : x;
   const auto window = static_cast<double>(options.window);
   if (std::abs(static_cast<double>(one.a) - static_cast<double>(other.a)) > window ||
       static_cast<double>(other.b - one.b) > window || way.submaps[one.a] != way.submaps[other.a] ||
@@ -141,7 +141,7 @@ bool support(const Way& way, const LoopCandidate& x, const LoopCandidate& y, con
 }
 
 /// Groups of all that support each other, by flood fill.
-std::set<std::set<Key>> by_flood_fill(const Way& way, const std::vector<LoopCandidate>& candidates,
+std::set<std::set<Key>> by_flood_fill(const Way& way, const std::vector<EdgeCandidate>& candidates,
                                       const ClusterOptions& options) {
   std::set<std::set<Key>> groups;
   std::vector<bool> seen(candidates.size(), false);
@@ -175,7 +175,7 @@ TEST(LoopClusters, AreTheGroupsThatAFloodFillFindsWhateverTheOrder) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
     Way way(seed);
     for (std::size_t node = 10 + seed % 5; node < way.submaps.size(); ++node) way.submaps[node] = node < 48 ? 1 : 2;
-    std::vector<LoopCandidate> candidates = random_candidates(way, 20 + 4 * seed);
+    std::vector<EdgeCandidate> candidates = random_candidates(way, 20 + 4 * seed);
     ClusterOptions options;
     options.window = 1 + static_cast<int>(seed % 5);
     const std::set<std::set<Key>> expected = by_flood_fill(way, candidates, options);
@@ -195,8 +195,8 @@ TEST(LoopClusters, AreAsStrongAsTheirWeakerSideAndTheStrongestComesFirst) {
     for (std::size_t k = 0; k < clusters.size(); ++k) {
       std::map<std::size_t, double> by_a;
       std::map<std::size_t, double> by_b;
-      for (const LoopCandidate& member : clusters[k].members) {
-        const double worth = std::min(6.0, std::max(0.0, member.log_odds + 2.0));
+      for (const EdgeCandidate& member : clusters[k].members) {
+        const double worth = std::min(6.0, std::max(0.0, member.score + 2.0));
         by_a[member.a] = std::max(by_a[member.a], worth);
         by_b[member.b] = std::max(by_b[member.b], worth);
       }

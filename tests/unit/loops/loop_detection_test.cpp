@@ -21,9 +21,9 @@ using test::kRingLap;
 
 using Pair = std::pair<std::size_t, std::size_t>;
 
-std::set<Pair> pairs_of(const std::vector<LoopCandidate>& candidates) {
+std::set<Pair> pairs_of(const std::vector<EdgeCandidate>& candidates) {
   std::set<Pair> pairs;
-  for (const LoopCandidate& candidate : candidates) pairs.emplace(candidate.a, candidate.b);
+  for (const EdgeCandidate& candidate : candidates) pairs.emplace(candidate.a, candidate.b);
   return pairs;
 }
 
@@ -74,18 +74,18 @@ TEST(LikelyLoops, FindsThePlacesThatWereSeenBefore) {
   LoopDetectionOptions options;
   options.likely_places = 5;
   options.shortest_loop = 30;
-  const std::vector<LoopCandidate> found = likely_loops(ring().views, 0, by(matching, options, nobody));
+  const std::vector<EdgeCandidate> found = likely_loops(ring().views, 0, by(matching, options, nobody));
   std::map<std::size_t, std::set<std::size_t>> places;
   std::set<std::size_t> right;
-  for (const LoopCandidate& loop : found) {
+  for (const EdgeCandidate& loop : found) {
     ASSERT_LE(loop.a + 30, loop.b) << "too short a loop";
     ASSERT_LT(loop.b, ring().views.size());
     const double of_slipping = std::log(std::max(1.0, worst_deviation_m(loop.covariance) / 0.2));
-    EXPECT_GE(1.0 / (1.0 + std::exp(-loop.log_odds - of_slipping)), options.least_probability - 1e-9);
+    EXPECT_GE(1.0 / (1.0 + std::exp(-loop.score - of_slipping)), options.least_probability - 1e-9);
     EXPECT_GT(loop.covariance.determinant(), 0.0);
     places[loop.b].insert(loop.a);
     const Pose2 a_from_b = inverse(ring().truth[loop.a]) * ring().truth[loop.b];
-    if (loop.log_odds > 0.0 && testing::Value(loop.a_from_b, test::IsNearPose(a_from_b, 0.10, 2 * kDegree))) {
+    if (loop.score > 0.0 && testing::Value(loop.a_from_b, test::IsNearPose(a_from_b, 0.10, 2 * kDegree))) {
       right.insert(loop.b);
     }
   }
@@ -110,7 +110,7 @@ TEST(LikelyLoops, StopsWhenItIsAskedTo) {
   EXPECT_TRUE(likely_loops(ring().views, 0, by(matching, options, none)).empty());
   EXPECT_EQ(none.done, 0U);
   Patience one(1);
-  const std::vector<LoopCandidate> some = likely_loops(ring().views, 0, by(matching, options, one));
+  const std::vector<EdgeCandidate> some = likely_loops(ring().views, 0, by(matching, options, one));
   EXPECT_GT(one.done, 0U);
   EXPECT_LT(one.done, one.total);
   RunObserver nobody;
@@ -123,18 +123,18 @@ TEST(LikelyLoops, CanBeLookedForInParts) {
   LoopDetectionOptions options;
   options.likely_places = 2;
   RunObserver nobody;
-  const std::vector<LoopCandidate> all = likely_loops(ring().views, 0, by(matching, options, nobody));
+  const std::vector<EdgeCandidate> all = likely_loops(ring().views, 0, by(matching, options, nobody));
   const NodeViews begin(ring().views.begin(), ring().views.begin() + 30);
-  std::vector<LoopCandidate> parts = likely_loops(begin, 0, by(matching, options, nobody));
+  std::vector<EdgeCandidate> parts = likely_loops(begin, 0, by(matching, options, nobody));
   const std::size_t num_first = parts.size();
-  for (const LoopCandidate& loop : likely_loops(ring().views, 30, by(matching, options, nobody))) parts.push_back(loop);
+  for (const EdgeCandidate& loop : likely_loops(ring().views, 30, by(matching, options, nobody))) parts.push_back(loop);
   ASSERT_EQ(parts.size(), all.size());
   EXPECT_GT(num_first, 0U);
   EXPECT_LT(num_first, all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(parts[i].a, all[i].a);
     EXPECT_EQ(parts[i].b, all[i].b);
-    EXPECT_EQ(parts[i].log_odds, all[i].log_odds);
+    EXPECT_EQ(parts[i].score, all[i].score);
   }
 }
 
@@ -143,14 +143,14 @@ TEST(LikelyLoops, AreTheSameToTheBitForAnyNumberOfThreads) {
   RunObserver nobody;
   LoopDetectionOptions options;
   options.likely_places = 2;
-  const std::vector<LoopCandidate> one = likely_loops(ring().views, 0, by(matching, options, nobody));
-  const std::vector<LoopCandidate> three = likely_loops(ring().views, 0, by(matching, options, nobody, 3));
+  const std::vector<EdgeCandidate> one = likely_loops(ring().views, 0, by(matching, options, nobody));
+  const std::vector<EdgeCandidate> three = likely_loops(ring().views, 0, by(matching, options, nobody, 3));
   ASSERT_EQ(one.size(), three.size());
   ASSERT_FALSE(one.empty());
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(one[i].a, three[i].a);
     EXPECT_EQ(one[i].b, three[i].b);
-    EXPECT_EQ(one[i].log_odds, three[i].log_odds);
+    EXPECT_EQ(one[i].score, three[i].score);
     EXPECT_THAT(one[i].a_from_b, test::HasSameBits(three[i].a_from_b));
   }
 }
@@ -178,7 +178,7 @@ TEST(Bridges, FindTheStepAcross) {
   RunObserver nobody;
   const test::Views few(ring().views.begin(), ring().views.begin() + 12);
   int right = 0;
-  for (const LoopCandidate& bridge : cross_edge_matches(few, {5}, by(matching, detection, nobody))) {
+  for (const EdgeCandidate& bridge : cross_edge_matches(few, {5}, by(matching, detection, nobody))) {
     const Pose2 a_from_b = inverse(ring().truth[bridge.a]) * ring().truth[bridge.b];
     if (testing::Value(bridge.a_from_b, test::IsNearPose(a_from_b, 0.10, 2 * kDegree))) ++right;
   }

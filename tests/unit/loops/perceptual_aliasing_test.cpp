@@ -15,40 +15,40 @@ struct Walk {
   Walk() {
     for (std::size_t n = 0; n < 60; ++n) map.push_back({static_cast<double>(n), 0.0, 0.0});
     edges = test::drifting_edges(map, 0.0);
-    for (EdgeChoices& edge : edges) edge.probability = 0.99;
+    for (Edge& edge : edges) edge.probability = 0.99;
   }
 
-  LoopCandidate loop(std::size_t a, std::size_t b, const Pose2& a_from_b, double log_odds) const {
+  EdgeCandidate loop(std::size_t a, std::size_t b, const Pose2& a_from_b, double log_odds) const {
     return {a, b, a_from_b, test::covariance_of(0.05, 1 * kDegree), log_odds};
   }
   /// As the chain has it.
-  LoopCandidate right(std::size_t a, std::size_t b, double log_odds) const {
+  EdgeCandidate right(std::size_t a, std::size_t b, double log_odds) const {
     return loop(a, b, inverse(map[a]) * map[b], log_odds);
   }
-  std::vector<LoopCandidate> of(const std::vector<LoopCandidate>& candidates, double sure_probability = 0.97) const {
+  std::vector<EdgeCandidate> of(const std::vector<EdgeCandidate>& candidates, double sure_probability = 0.97) const {
     return without_aliases(candidates, edges, map, sure_probability);
   }
 
   std::vector<Pose2> map;
-  std::vector<EdgeChoices> edges;
+  std::vector<Edge> edges;
 };
 
 TEST(PerceptualAliasing, WhereNothingIsContradictedAllIsKept) {
   const Walk walk;
-  const std::vector<LoopCandidate> kept = walk.of({walk.right(3, 15, 4.0), walk.loop(2, 55, {}, 1.0)});
+  const std::vector<EdgeCandidate> kept = walk.of({walk.right(3, 15, 4.0), walk.loop(2, 55, {}, 1.0)});
   ASSERT_EQ(kept.size(), 2U);
-  EXPECT_EQ(kept[0].log_odds, 4.0);
-  EXPECT_EQ(kept[1].log_odds, 1.0) << "the chain is not sure of what is so far apart";
+  EXPECT_EQ(kept[0].score, 4.0);
+  EXPECT_EQ(kept[1].score, 1.0) << "the chain is not sure of what is so far apart";
 }
 
 TEST(PerceptualAliasing, WhatTheChainContradictsIsLeftOutAndCountsAgainstTheOthersThere) {
   const Walk walk;
-  const std::vector<LoopCandidate> kept = walk.of({walk.loop(10, 22, {0.1, 0.0, 0.0}, 3.0), walk.loop(3, 52, {}, 6.0),
+  const std::vector<EdgeCandidate> kept = walk.of({walk.loop(10, 22, {0.1, 0.0, 0.0}, 3.0), walk.loop(3, 52, {}, 6.0),
                                                    walk.loop(8, 58, {}, 6.0), walk.loop(4, 24, {20.0, 0.0, 0.0}, 2.0)});
   ASSERT_EQ(kept.size(), 3U);
-  EXPECT_EQ(kept[0].log_odds, 6.0) << "far from both";
-  EXPECT_NEAR(kept[1].log_odds, 1.0, 1e-12) << "two nodes from the one";
-  EXPECT_NEAR(kept[2].log_odds, -3.0, 1e-12) << "two nodes from the other, though the chain agrees";
+  EXPECT_EQ(kept[0].score, 6.0) << "far from both";
+  EXPECT_NEAR(kept[1].score, 1.0, 1e-12) << "two nodes from the one";
+  EXPECT_NEAR(kept[2].score, -3.0, 1e-12) << "two nodes from the other, though the chain agrees";
 }
 
 TEST(PerceptualAliasing, ATurnIsContradictedAsWell) {
@@ -59,13 +59,13 @@ TEST(PerceptualAliasing, ATurnIsContradictedAsWell) {
 
 TEST(PerceptualAliasing, HowSureAnEdgeMustBeToContradictIsForTheCallerToSay) {
   const Walk walk;
-  const std::vector<LoopCandidate> wrong{walk.loop(10, 22, {0.1, 0.0, 0.0}, 3.0)};
+  const std::vector<EdgeCandidate> wrong{walk.loop(10, 22, {0.1, 0.0, 0.0}, 3.0)};
   EXPECT_TRUE(walk.of(wrong, 0.99).empty()) << "as sure as the edges are";
   EXPECT_EQ(walk.of(wrong, 0.995).size(), 1U);
 }
 
 TEST(PerceptualAliasing, ADoubtfulLinkOrOneThatSlidesContradictsNothing) {
-  const LoopCandidate off = Walk().loop(10, 22, {}, 3.0);
+  const EdgeCandidate off = Walk().loop(10, 22, {}, 3.0);
   Walk doubtful;
   doubtful.edges[15].probability = 0.9;
   EXPECT_EQ(doubtful.of({off}).size(), 1U);

@@ -139,7 +139,7 @@ TEST(RetiredKeyframes, LeaveAChainThatSaysWhatTheMapDid) {
     EXPECT_TRUE(is_mine || all.insert(scan.scan_index).second);
   }
   EXPECT_EQ(all.size(), laps.truth.size());
-  for (const LoopCandidate& loop : loops.candidates) {
+  for (const EdgeCandidate& loop : loops.candidates) {
     const Pose2& a = laps.truth[known.graph.keyframes[loop.a].scan_index];
     const Pose2& b = laps.truth[known.graph.keyframes[loop.b].scan_index];
     EXPECT_THAT(loop.a_from_b, test::IsNearPose(inverse(a) * b, 1e-9, 1e-9));

@@ -14,7 +14,7 @@
 #include "shapemap/mapper/mapper.hpp"
 #include "support/map_results.hpp"
 #include "support/ring_laps.hpp"
-#include "support/sub_scans.hpp"
+#include "support/sweeps_at_stops.hpp"
 
 namespace shapemap {
 namespace {

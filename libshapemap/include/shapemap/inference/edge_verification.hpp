@@ -29,19 +29,6 @@ struct EdgeVerificationOptions {
   }
 };
 
-/// What a doubtful link may be: node `link` to node `link` + 1. The first candidate is the one that is in the map.
-struct DoubtfulEdge {
-  struct Candidate {
-    Pose2 a_from_b;
-    double score = 0.0;                                    ///< of these two scans alone: MatchCandidate::score
-    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, theta), in the frame of the first node
-    double best_deviation_m = 0.0;  ///< how little the two scans hold it, see best_deviation_m() in confidence.hpp
-  };
-  std::size_t edge = 0;
-  std::vector<Candidate> candidates;  ///< at least one
-  double insufficient_view = 0.0;     ///< of the two scans: see insufficient_view() in confidence.hpp
-};
-
 struct VerifiedEdge {
   std::size_t candidate = 0;  ///< the best, or what joins; where the observer asked to stop, that of the map
   double probability = 0.0;   ///< that it is right; 0 where nobody was asked
@@ -66,7 +53,7 @@ struct VerifiedMap {
 /// `least_probability` is not joined; parallel links that say what was joined are joined with it, as probable as it.
 /// Stops early, with the rest of the links as they were, when the observer asks to.
 VerifiedMap verify_edges(const NodeViews& views, std::vector<Pose2> map_from_node,
-                         std::vector<std::size_t> submap_of_node, const std::vector<DoubtfulEdge>& doubtful,
+                         std::vector<std::size_t> submap_of_node, const std::vector<Edge>& doubtful,
                          const VisibilityOptions& visibility, double least_probability, int threads,
                          RunObserver& observer);
 

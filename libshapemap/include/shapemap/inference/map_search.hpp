@@ -8,7 +8,7 @@
 
 #include "shapemap/core/observer.hpp"
 #include "shapemap/core/options.hpp"
-#include "shapemap/graph/odometry_edge.hpp"
+#include "shapemap/graph/edge.hpp"
 #include "shapemap/loops/loop_clusters.hpp"
 #include "shapemap/matching/visibility.hpp"
 
@@ -54,9 +54,9 @@ inline constexpr int kCut = -1;
 /// errors of the pose graph. Loops that gain are closed, strongest first; then what contradicts the map is looked into:
 /// a strong loop that does not fit, or a doubtful alignment, may show that another alignment is wrong, or a loop.
 /// Stops early with what there is when the observer asks to.
-MapSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views,
-                        const std::vector<EdgeChoices>& edges, const std::vector<LoopCandidate>& candidates,
-                        const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
-                        const MapSearchOptions& options, int threads, RunObserver& observer);
+MapSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<Edge>& edges,
+                        const std::vector<EdgeCandidate>& candidates, const std::vector<LoopCluster>& clusters,
+                        const VisibilityOptions& visibility, const MapSearchOptions& options, int threads,
+                        RunObserver& observer);
 
 }  // namespace shapemap

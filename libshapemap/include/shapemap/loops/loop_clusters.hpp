@@ -8,27 +8,19 @@
 #include "shapemap/core/angles.hpp"
 #include "shapemap/core/numbers.hpp"
 #include "shapemap/core/pose2.hpp"
+#include "shapemap/graph/edge.hpp"
 
 namespace shapemap {
-
-/// Node `b` may be at this place in the frame of node `a`, though the chain does not say so.
-struct LoopCandidate {
-  std::size_t a = 0;
-  std::size_t b = 0;  ///< the later one
-  Pose2 a_from_b;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-  double log_odds = 0.0;  ///< that it is right, by the two scans alone; less where they do not hold it
-};
 
 /// What a match counts for that others may support, by its own log odds: as logarithm of odds, never negative.
 double worth_among_others(double log_odds);
 
 /// The same of a candidate in its cluster.
-double worth_of_member(const LoopCandidate& member);
+double worth_of_member(const EdgeCandidate& member);
 
 /// Hypotheses that say the same: several scans of one stretch of the way lie so about several of another.
 struct LoopCluster {
-  std::vector<LoopCandidate> members;  ///< most probable first
+  std::vector<EdgeCandidate> members;  ///< most probable first
   double strength = 0.0;               ///< log odds of the best member of each node, summed
   std::size_t num_a = 0;               ///< distinct nodes of the one stretch
   std::size_t num_b = 0;
@@ -56,7 +48,7 @@ struct ClusterOptions {
 
 /// `map_from_node` is the chain, of which only short pieces are trusted: pieces with the same `submap_of_node`.
 /// Strongest first. Hypotheses that no other one supports make no cluster.
-std::vector<LoopCluster> loop_clusters(const std::vector<LoopCandidate>& candidates,
+std::vector<LoopCluster> loop_clusters(const std::vector<EdgeCandidate>& candidates,
                                        const std::vector<Pose2>& map_from_node,
                                        const std::vector<std::size_t>& submap_of_node, const ClusterOptions& options);
 

@@ -46,11 +46,11 @@ struct LoopSearch {
 
 /// Each node from `first` on, aligned to the earlier ones that look most alike. Stops with what was found by then when
 /// the observer asks to.
-std::vector<LoopCandidate> likely_loops(const NodeViews& views, std::size_t first, const LoopSearch& search);
+std::vector<EdgeCandidate> likely_loops(const NodeViews& views, std::size_t first, const LoopSearch& search);
 
 /// The few nodes before and after each of `links` (node i to node i + 1), all aligned to each other. Throws Interrupted
 /// when the observer asks to stop.
-std::vector<LoopCandidate> cross_edge_matches(const NodeViews& views, const std::vector<std::size_t>& edges,
+std::vector<EdgeCandidate> cross_edge_matches(const NodeViews& views, const std::vector<std::size_t>& edges,
                                               const LoopSearch& search);
 
 }  // namespace shapemap

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "shapemap/graph/odometry_edge.hpp"
+#include "shapemap/graph/edge.hpp"
 #include "shapemap/loops/loop_clusters.hpp"
 
 /// Places that look like others.
@@ -15,8 +15,7 @@ namespace shapemap {
 ///
 /// Edges that are at least `sure_probability` probable are not questioned. `map_of_odometry`: poses of the nodes by the
 /// first alternative of each link. Throws std::invalid_argument unless it has more nodes than links.
-std::vector<LoopCandidate> without_aliases(const std::vector<LoopCandidate>& candidates,
-                                           const std::vector<EdgeChoices>& edges,
+std::vector<EdgeCandidate> without_aliases(const std::vector<EdgeCandidate>& candidates, const std::vector<Edge>& edges,
                                            const std::vector<Pose2>& map_of_odometry, double sure_probability);
 
 }  // namespace shapemap

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "shapemap/graph/odometry_edge.hpp"
+#include "shapemap/graph/edge.hpp"
 #include "graph_numbers.hpp"
 
 namespace shapemap {
 
-std::vector<Pose2> sure_steps(const std::vector<EdgeChoices>& edges) {
+std::vector<Pose2> sure_steps(const std::vector<Edge>& edges) {
   std::vector<Pose2> steps;
-  for (const EdgeChoices& edge : edges) {
+  for (const Edge& edge : edges) {
     if (edge.exists() && edge.probability > kGraph.steps.sure) steps.push_back(edge.candidates.front().a_from_b);
   }
   return steps;
