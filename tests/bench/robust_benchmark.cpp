@@ -96,7 +96,7 @@ void BM_CoarseVisibility(benchmark::State& state) {
   const Views views(pair);
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        visibility(views.reference, views.query, pair.ref_from_query, {}, kCoarseSlack, kCoarseStride));
+        visibility(views.reference, views.query, pair.ref_from_query, {}, {kCoarseSlack, kCoarseStride}));
   }
 }
 BENCHMARK(BM_CoarseVisibility)->Apply(all_scans);

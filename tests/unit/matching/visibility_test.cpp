@@ -41,7 +41,7 @@ void add_point(ScanView& view, const Point2& p_m, double direction_rad, double w
 Visibility of_point(const ScanView& seer, const Point2& p_m, double direction_rad, double slack = 1.0) {
   ScanView seen;
   add_point(seen, p_m, direction_rad);
-  return visibility(seer, seen, {}, {0.10, 25 * kDegree, 0.20}, slack);
+  return visibility(seer, seen, {}, {0.10, 25 * kDegree, 0.20}, {slack, 1});
 }
 
 TEST(Visibility, OfAPointOnTheSurfaceThatWasSeenThereAgrees) {
@@ -129,8 +129,8 @@ TEST(Visibility, LooksAtPointsWhereThePosePutsThem) {
 TEST(Visibility, LooksAtEverySecondPointWhenAskedTo) {
   ScanView query;
   for (int k = 0; k < 10; ++k) add_point(query, {1.0, 0.0}, 0.0);
-  EXPECT_EQ(visibility(all_around(2.0), query, {}, {}, 1.0, 2).total(), 5.0);
-  EXPECT_EQ(visibility(all_around(2.0), query, {}, {}, 1.0, 1).total(), 10.0);
+  EXPECT_EQ(visibility(all_around(2.0), query, {}, {}, {1.0, 2}).total(), 5.0);
+  EXPECT_EQ(visibility(all_around(2.0), query, {}, {}, {1.0, 1}).total(), 10.0);
 }
 
 Visibility between(const test::World& world, const Pose2& a, const Pose2& b, const Pose2& candidate) {
