@@ -11,7 +11,7 @@
 namespace shapemap {
 namespace {
 
-/// How well a pose goes with a scan that it was not made from. Little overlap says little either way.
+/// Returns the score of a pose by two scans that it was not found from. Little overlap is little evidence either way.
 double three_scan_score(const Visibility& v) {
   const double total = std::max(v.total(), 1e-9);
   const ThreeScanWeights& weights = kMapper.three_scans;
