@@ -179,7 +179,7 @@ TEST(MapLog, OfEquallyLargeComponentsTheFirstMakesTheMap) {
   EXPECT_EQ(mapped(log).largest_component, 0);
 }
 
-/// Records what it is told, and asks to stop the `stop_at`th time that it is asked.
+/// Records the progress, and asks to stop at the `stop_at`th question after `done` scans.
 struct Watcher : MappingEvents {
   explicit Watcher(std::size_t stop, std::size_t done = 0) : stop_at(stop), stop_after(done) {}
   void on_progress(std::size_t done, std::size_t total) override { progress.emplace_back(done, total); }

@@ -48,7 +48,7 @@ std::vector<std::size_t> sizes_of(const MapResult& result) {
   return sizes;
 }
 
-/// Checks that each scan of the result is in exactly one component, and that its poses are finite and in order.
+/// Checks that each scan of the result is in exactly one component, with a finite pose and all its sweeps.
 void expect_whole(const MapResult& result, const Log& log) {
   ASSERT_LE(result.scans.size(), log.scans.size());
   std::map<std::size_t, int> component_of;
