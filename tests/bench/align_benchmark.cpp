@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Speed of the stages on real sizes: scans of the demo log, one point per reading (1604 of them) as in the paper, so
-// that the sizes do not depend on the scene. Stated targets, one core: similarity of 1600 x 4800 points 10 ms, LCS of
-// that size 1 ms, alignment of 1604 points to three scans over five rotations 60 ms, with ICP 100 ms.
+// Speed of the stages of the paper on real sizes: scans of the demo log have one point per reading (1604) as in the
+// paper, so that the sizes do not depend on the scene. Stated targets, one core: similarity of 1600 x 4800 points 10
+// ms, LCS of that size 1 ms, alignment of 1604 points to three scans over five rotations 60 ms, with ICP 100 ms.
 #include <benchmark/benchmark.h>
 
 #include "shapemap/io/log_file.hpp"
@@ -12,7 +12,7 @@
 namespace shapemap {
 namespace {
 
-constexpr std::size_t kQuery = 4;  // position of the demo log; the three before it are the target
+constexpr std::size_t kQuery = 4;  // scan of the demo log; the three before it are the target
 constexpr std::size_t kNumPoints = 1604;
 
 const Log& demo_log() {
@@ -20,8 +20,8 @@ const Log& demo_log() {
   return log;
 }
 
-/// The shape of a position with exactly kNumPoints points: the readings that hit nothing are made up for by repeating
-/// the last ones.
+/// Returns the shape of a scan with exactly kNumPoints points; the last points are repeated in place of readings
+/// without return.
 Shape full_shape(std::size_t scan) {
   MappingOptions options;
   options.shape.points = ShapePoints::kBeams;
@@ -31,7 +31,7 @@ Shape full_shape(std::size_t scan) {
   return shape;
 }
 
-/// The three scans before the query, at their reference poses, in the frame of the latest.
+/// Returns the three scans before the query, at their reference poses, in the frame of the latest.
 std::vector<Shape> target_scans() {
   std::vector<Shape> scans;
   const Pose2 ref_from_map = inverse(demo_log().scans[kQuery - 1].reference_pose.value());
@@ -57,13 +57,13 @@ void set_sizes(benchmark::State& state, std::size_t rows, std::size_t columns) {
   state.counters["target_points"] = static_cast<double>(columns);
 }
 
-void BM_ShapeOfPosition(benchmark::State& state) {
+void BM_ShapeOfScan(benchmark::State& state) {
   const MappingOptions options;
   for (auto _ : state) {
     benchmark::DoNotOptimize(shape_of(demo_log().scans[kQuery], options.returns, options.polylines, options.shape));
   }
 }
-BENCHMARK(BM_ShapeOfPosition)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_ShapeOfScan)->Unit(benchmark::kMillisecond);
 
 void BM_Similarity(benchmark::State& state) {
   const ScanFeatures query = features(full_shape(kQuery));
@@ -81,7 +81,7 @@ void BM_LcsWithTraceback(benchmark::State& state) {
 }
 BENCHMARK(BM_LcsWithTraceback)->Unit(benchmark::kMillisecond);
 
-/// The peer: the textbook's table, with traceback.
+/// The textbook's table with traceback, for comparison.
 void BM_LcsByDynamicProgramming(benchmark::State& state) {
   const SimilarityIndex index(features(joined(target_scans())), {});
   const BitMatrix matches = index.matches(features(full_shape(kQuery)));
@@ -111,13 +111,13 @@ void BM_LcsByDynamicProgramming(benchmark::State& state) {
 }
 BENCHMARK(BM_LcsByDynamicProgramming)->Unit(benchmark::kMillisecond);
 
-/// Five rotations against three scans, from shapes to pose; the argument is the number of ICP iterations allowed.
+/// An alignment of five rotations to three scans, from shapes to pose; the argument is the limit of ICP iterations.
 void BM_Align(benchmark::State& state) {
   PaperOptions options;
   options.icp.max_iterations = static_cast<int>(state.range(0));
   options.icp.decoupled = options.icp.max_iterations > 0;
   const Shape query = full_shape(kQuery);
-  std::vector<TargetScan> scans;  // what the chain keeps of each scan
+  std::vector<TargetScan> scans;  // what the mapper keeps of each scan
   for (const Shape& scan : target_scans()) scans.push_back(target_scan(scan, options.histogram.radius_m));
   for (auto _ : state) {
     const PartialMap target(scans);

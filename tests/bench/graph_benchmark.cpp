@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Speed of what makes a chain a map: how places are known again, how the graph is solved, how a map is judged.
+// Speed of place descriptors, of the optimisation of a pose graph, and of the score of a map.
 #include <benchmark/benchmark.h>
 
 #include <random>
@@ -11,26 +11,26 @@
 namespace shapemap {
 namespace {
 
-void BM_PlaceSignature(benchmark::State& state) {
+void BM_PlaceDescriptor(benchmark::State& state) {
   const ScanView view = test::view_from(test::ring_world(1), test::on_ring(3.0));
   for (auto _ : state) benchmark::DoNotOptimize(place_descriptor(view));
   state.counters["points"] = static_cast<double>(view.size());
 }
-BENCHMARK(BM_PlaceSignature)->Unit(benchmark::kMicrosecond);
+BENCHMARK(BM_PlaceDescriptor)->Unit(benchmark::kMicrosecond);
 
-PlaceDescriptor random_signature(std::mt19937& rng) {
+PlaceDescriptor random_descriptor(std::mt19937& rng) {
   std::uniform_real_distribution<float> unit(0.0F, 0.06F);
   PlaceDescriptor descriptor;
   for (float& value : descriptor) value = unit(rng);
   return descriptor;
 }
 
-/// What a new scan costs when there are so many.
+/// The search for similar places of a new scan among so many.
 void BM_MostAlike(benchmark::State& state) {
   std::mt19937 rng(1);
   PlaceIndex index;
   const auto count = static_cast<std::size_t>(state.range(0));
-  while (index.size() < count) index.add(random_signature(rng));
+  while (index.size() < count) index.add(random_descriptor(rng));
   constexpr std::size_t kWanted = 10;
   for (auto _ : state) benchmark::DoNotOptimize(index.most_alike(count - 1, count - kWanted, kWanted));
 }
@@ -52,21 +52,21 @@ struct Ring {
   test::Views views = test::views_along(test::ring_world(1), truth);
 };
 
-void BM_MapEvidence(benchmark::State& state) {
+void BM_MapScore(benchmark::State& state) {
   const Ring ring;
   for (auto _ : state) benchmark::DoNotOptimize(MapScore(ring.views, {}, 1).of(ring.truth));
   state.counters["nodes"] = static_cast<double>(ring.truth.size());
 }
-BENCHMARK(BM_MapEvidence)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_MapScore)->Unit(benchmark::kMillisecond);
 
-/// The same map again: nothing has to be looked at.
-void BM_MapEvidenceThatIsKnown(benchmark::State& state) {
+/// The score of the same map again, which needs no comparison of scans.
+void BM_MapScoreThatIsKnown(benchmark::State& state) {
   const Ring ring;
   MapScore score(ring.views, {}, 1);
   score.of(ring.truth);
   for (auto _ : state) benchmark::DoNotOptimize(score.of(ring.truth));
 }
-BENCHMARK(BM_MapEvidenceThatIsKnown)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_MapScoreThatIsKnown)->Unit(benchmark::kMillisecond);
 
 void BM_NearPairs(benchmark::State& state) {
   std::mt19937 rng(1);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How long a scan takes when scans are pushed as a sensor delivers them: the distribution of the milliseconds that
-// Mapper::add_scan() takes on a recording, with the work on the whole map in a thread of its own.
+// Prints the distribution of the milliseconds that Mapper::add_scan() takes when the scans of a recording are pushed as
+// a sensor delivers them, with the work on the whole map in a thread of its own.
 //
 // usage: shapemap_live_benchmark LOG [SPEED [MOST_SCANS]]
 //   SPEED       times as fast as recorded (default 10); 0: each scan as soon as the one before is done
-//   MOST_SCANS  only so many scans of the begin of the log
+//   MOST_SCANS  only so many scans from the start of the log
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

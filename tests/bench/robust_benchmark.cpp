@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Milliseconds of the stages of robust alignment: on scans of a furnished room with 181 and 361 beams, and on two
-// positions of the demo log (four sub-scans, 1604 beams).
+// Milliseconds of the stages of the robust scan matcher: on scans of a furnished room with 181 and 361 beams, and on
+// two scans of the demo log (four sweeps, 1604 beams).
 #include <benchmark/benchmark.h>
 
 #include "shapemap/io/log_file.hpp"
@@ -12,11 +12,11 @@
 namespace shapemap {
 namespace {
 
-constexpr int kDemo = 0;  // instead of a number of beams
+constexpr int kDemo = 0;  // stands for the demo log in place of a number of beams
 constexpr double kCoarseSlack = 2.0;
 constexpr std::size_t kCoarseStride = 2;
 
-/// Two scans and how they lie.
+/// Two scans and their relative pose.
 struct Pair {
   Scan reference;
   Scan query;
@@ -84,19 +84,19 @@ void BM_VotingOfOneRotation(benchmark::State& state) {
 }
 BENCHMARK(BM_VotingOfOneRotation)->Apply(all_scans);
 
-void BM_ShapeOfOneRotation(benchmark::State& state) {
+void BM_LcsOfOneRotation(benchmark::State& state) {
   const Views views(pair_of(state));
   const LcsHypotheses shapes(views.reference, views.query);
   for (auto _ : state) benchmark::DoNotOptimize(shapes.translations(0.4, CandidateOptions().shape_segments));
 }
-BENCHMARK(BM_ShapeOfOneRotation)->Apply(all_scans);
+BENCHMARK(BM_LcsOfOneRotation)->Apply(all_scans);
 
 void BM_CoarseVisibility(benchmark::State& state) {
   const Pair& pair = pair_of(state);
   const Views views(pair);
   for (auto _ : state) {
     benchmark::DoNotOptimize(
-        visibility(views.reference, views.query, pair.ref_from_query, {}, kCoarseSlack, kCoarseStride));
+        visibility(views.reference, views.query, pair.ref_from_query, {}, {kCoarseSlack, kCoarseStride}));
   }
 }
 BENCHMARK(BM_CoarseVisibility)->Apply(all_scans);
@@ -109,19 +109,19 @@ void BM_Refinement(benchmark::State& state) {
 }
 BENCHMARK(BM_Refinement)->Apply(all_scans);
 
-void BM_RobustAlign(benchmark::State& state) {
+void BM_MatchScans(benchmark::State& state) {
   const Views views(pair_of(state));
   for (auto _ : state) benchmark::DoNotOptimize(match_scans(views.reference, views.query, {}));
 }
-BENCHMARK(BM_RobustAlign)->Apply(all_scans);
+BENCHMARK(BM_MatchScans)->Apply(all_scans);
 
-/// The search that follows when the tangents alone have not told the rotation.
-void BM_RobustAlignOfDifferentPlaces(benchmark::State& state) {
+/// A match with the search over all rotations, which follows when tangents alone do not determine the rotation.
+void BM_MatchScansOfDifferentPlaces(benchmark::State& state) {
   const Views views(pair_of(state));
   const ScanView elsewhere = test::view_from(test::strange_place(1), {});
   for (auto _ : state) benchmark::DoNotOptimize(match_scans(views.reference, elsewhere, {}));
 }
-BENCHMARK(BM_RobustAlignOfDifferentPlaces)->Apply(all_scans);
+BENCHMARK(BM_MatchScansOfDifferentPlaces)->Apply(all_scans);
 
 }  // namespace
 }  // namespace shapemap

@@ -134,7 +134,7 @@ class Revision {
         const Pose2 near_from_far = inverse(poses[a]) * (move * poses[b]);
         if (near_from_far.translation().norm() > within_m) continue;
         balance.add(MapScore::of_pair(shapemap::visibility(*views_[a], *views_[b], near_from_far, visibility_,
-                                                           kInference.agreement.odometry_slack)));
+                                                           {kInference.agreement.odometry_slack, 1})));
       }
     }
     return balance;

@@ -79,7 +79,7 @@ double MapScore::of_pairs(const std::vector<RelativePose>& pairs, double each_st
   parallel_for(stale.size(), threads_, [&](std::size_t k) {
     const RelativePose& pair = pairs[stale[k]];
     const Visibility seen = visibility(*views_[pair.a], *views_[pair.b], pair.a_from_b, options_,
-                                       kInference.map_score.slack, kInference.map_score.stride);
+                                       {kInference.map_score.slack, kInference.map_score.stride});
     *known[stale[k]] = {pair.a_from_b, of_pair(seen)};
   });
   double sum = 0.0;

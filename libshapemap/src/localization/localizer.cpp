@@ -9,34 +9,33 @@
 #include "shapemap/inference/map_search.hpp"
 
 namespace shapemap {
-Localizer::Localizer(const KeyframeGraph& graph, const RobustOptions& options, std::size_t active_component,
-                     std::size_t first, LocalizationState state, const std::vector<EdgeCandidate>& loops,
-                     OptimizedMap& map)
+Localizer::Localizer(const KeyframeGraph& graph, const RobustOptions& options, const LocalizationStart& start,
+                     const std::vector<EdgeCandidate>& loops, OptimizedMap& map)
     : graph_(graph),
       options_(options),
       loops_(loops),
       map_(map),
-      verification_(graph, options, active_component),
+      verification_(graph, options, start.active_component),
       redundant_(graph.keyframes.size()),
-      state_(state),
-      log_odds_(state.log_odds),
-      open_(first),
-      good_(first),
-      last_telling_(first),
-      last_known_(first - 1) {}
+      state_(start.state),
+      log_odds_(start.state.log_odds),
+      open_(start.first),
+      good_(start.first),
+      last_informative_(start.first),
+      last_replaced_(start.first - 1) {}
 
 std::size_t Localizer::go(std::size_t last) {
   for (std::size_t b = open_; b < last && !state_.is_lost; ++b) {
     const bool doubts = is_in_doubt(b);
     if (doubts && b + kLocalization.localizer.look_ahead > last) break;
     if (!edge_exists(b) || (doubts && !decide(b))) {
-      make_certain(good_);  // it is not known where the robot went on, but it is where it was
+      make_certain(good_);  // the robot's place is known up to here, but not where it went on
       get_lost();
     } else if (!step(b)) {
       get_lost();
     }
   }
-  if (state_.is_lost) find_way(last);
+  if (state_.is_lost) relocalize(last);
   return open_;
 }
 
@@ -54,7 +53,7 @@ bool Localizer::is_in_doubt(std::size_t b) const {
   return edge_exists(b) && stated_probability(graph_.edges[b - 1]) < kLocalization.redundancy.sure_edge;
 }
 
-/// False when the robot cannot be where it is expected.
+/// Returns false when the robot cannot be where it is expected.
 bool Localizer::step(std::size_t b) {
   expect(b);
   map_.component[b] = verification_.active_component();
@@ -65,55 +64,56 @@ bool Localizer::step(std::size_t b) {
         -std::clamp(log_odds_ - kLocalization.localizer.least_of_new, 0.0, kLocalization.localizer.error_of_new);
   log_odds_ = std::min(kLocalization.places.sure_of_place, log_odds_ + seen.log_odds);
   if (log_odds_ < 0.0) return false;
-  const bool tells_nothing = seen.log_odds <= 0.0 && seen.log_odds >= -kLocalization.localizer.error_of_new;
-  last_telling_ = tells_nothing ? last_telling_ : b;
+  const bool is_informative = seen.log_odds > 0.0 || seen.log_odds < -kLocalization.localizer.error_of_new;
+  last_informative_ = is_informative ? b : last_informative_;
   if (seen.replacement) {
     map_.map_from_keyframe[b] = pose_by(map_, *seen.replacement);
-    verification_.let_go(b);
+    verification_.exclude(b);
     pending_.emplace_back(b, std::move(*seen.replacement));
   }
-  const bool nothing_will = b >= last_telling_ + kLocalization.localizer.look_ahead;
-  if (nothing_will && log_odds_ < kLocalization.places.sure_of_place) forget_pending();
-  if (log_odds_ == kLocalization.places.sure_of_place || (good_ == b && tells_nothing) || nothing_will) {
+  const bool is_long_without = b >= last_informative_ + kLocalization.localizer.look_ahead;
+  if (is_long_without && log_odds_ < kLocalization.places.sure_of_place) forget_pending();
+  if (log_odds_ == kLocalization.places.sure_of_place || (good_ == b && !is_informative) || is_long_without) {
     good_ = b + 1;
     make_certain(good_ - std::min(good_, kLocalization.localizer.lag));
   }
   return true;
 }
 
-/// They stay in the map themselves.
+/// Drops replacements that were never confirmed: these keyframes stay in the map.
 void Localizer::forget_pending() {
-  for (const auto& [keyframe, unused] : pending_) verification_.keep(keyframe);
+  for (const auto& [keyframe, unused] : pending_) verification_.include(keyframe);
   pending_.clear();
 }
 
 void Localizer::make_certain(std::size_t end) {
   if (end <= open_) return;
   auto open = pending_.begin();
-  for (; open != pending_.end() && open->first < end; ++open) know(open->first, std::move(open->second));
+  for (; open != pending_.end() && open->first < end; ++open) replace(open->first, std::move(open->second));
   pending_.erase(pending_.begin(), open);
   open_ = end;
   state_.log_odds = log_odds_;
 }
 
-void Localizer::know(std::size_t b, ReplacementKeyframe replacement) {
+void Localizer::replace(std::size_t b, ReplacementKeyframe replacement) {
   map_.constraints.push_back(
       {replacement.keyframe, b, replacement.pose.ref_from_query, pose_covariance(replacement.pose.fit), 0.0});
-  hold_back_from(b);
-  last_known_ = b;
-  verification_.let_go(b);
+  constrain_edges_before(b);
+  last_replaced_ = b;
+  verification_.exclude(b);
   redundant_[b] = std::move(replacement);
 }
 
-/// What is between a keyframe that is known again and the last one that was is held from both ends.
-void Localizer::hold_back_from(std::size_t b) {
-  for (std::size_t i = b; i > last_known_ && edge_exists(i); --i) {
+/// The edges between two recognised keyframes are constrained from both ends, as in a loop.
+void Localizer::constrain_edges_before(std::size_t b) {
+  for (std::size_t i = b; i > last_replaced_ && edge_exists(i); --i) {
     if (map_.component[i - 1] != verification_.active_component()) break;
     map_.loop_constrained[i - 1] = true;
   }
 }
 
-/// Takes the alternative of the link to `b` after which what follows is known again, and after no other.
+/// Takes the candidate of the edge to `b` after which the map recognises the following keyframes. Returns false when
+/// that singles out no candidate.
 bool Localizer::decide(std::size_t b) {
   const int chosen = map_.edge_choice[b - 1];
   const Pose2 before = map_.map_from_keyframe[b - 1];
@@ -134,10 +134,10 @@ void Localizer::get_lost() {
   forget_pending();
 }
 
-/// Of what may be anywhere, each stretch that links in doubt leave whole is tried at all places where it may be. What
-/// comes before one that is found stays apart until all of the map is solved; and so does what comes after a gap, where
-/// another log starts or nothing fits: that two logs are of one place takes more.
-void Localizer::find_way(std::size_t last) {
+/// Tries each stretch between doubtful edges at all places where it may be. The keyframes before a stretch that is
+/// placed stay a component of their own until the whole graph is optimised. So do those after a gap, where another
+/// session starts or nothing matches, because more evidence is needed to join two sessions.
+void Localizer::relocalize(std::size_t last) {
   const std::size_t lost = open_;
   for (std::size_t b = lost; b < last; ++b) {
     expect(b);
@@ -160,7 +160,7 @@ std::size_t Localizer::end_of_stretch(std::size_t first, std::size_t last) const
   return end;
 }
 
-/// Returns up to where it is in its place now.
+/// Tries to place keyframes `first` to before `last`. Returns the end of those that are placed.
 std::size_t Localizer::place(std::size_t first, std::size_t last) {
   if (last - first < kLocalization.localizer.shortest) return first;
   PlaceHypotheses places;
@@ -172,11 +172,11 @@ std::size_t Localizer::place(std::size_t first, std::size_t last) {
   }
   for (std::size_t b = first; b < last; ++b) expect(b);
   if (!places.is_sure() || places.best().sure_end <= places.best().sure_begin) return first;
-  settle_in(first, places.best());
+  accept(first, places.best());
   return first + places.best().sure_end;
 }
 
-/// A keyframe each, and where it may be: where the link to the first says, and where loops do.
+/// Returns keyframes of the stretch with poses that they may have, by the edge to the first and by loop candidates.
 std::vector<std::pair<std::size_t, Pose2>> Localizer::candidates(std::size_t first, std::size_t last) const {
   std::vector<std::pair<std::size_t, Pose2>> found;
   if (map_.component[first - 1] == verification_.active_component()) {
@@ -199,22 +199,22 @@ std::vector<std::pair<std::size_t, Pose2>> Localizer::candidates(std::size_t fir
   return found;
 }
 
-/// The robot is where the stretch was laid, as far as that is sure.
-void Localizer::settle_in(std::size_t first, PlacedStretch stretch) {
+/// Takes over the poses of a stretch as far as they are sure.
+void Localizer::accept(std::size_t first, PlacedStretch stretch) {
   const std::size_t begin = first + stretch.sure_begin;
   for (std::size_t b = begin; b < first + stretch.sure_end; ++b) {
     map_.map_from_keyframe[b] = stretch.map_from_keyframe[b - first];
     map_.component[b] = verification_.active_component();
   }
-  take_edge_as_in_map(begin);
-  last_known_ = begin;
+  choose_candidate_as_in_map(begin);
+  last_replaced_ = begin;
   for (std::size_t b = begin; b < first + stretch.sure_end; ++b) {
-    if (stretch.redundant[b - first]) know(b, std::move(*stretch.redundant[b - first]));
+    if (stretch.redundant[b - first]) replace(b, std::move(*stretch.redundant[b - first]));
   }
 }
 
-/// Of a link between two keyframes that are both in their places.
-void Localizer::take_edge_as_in_map(std::size_t b) {
+/// Chooses the candidate of the edge to `b` that agrees with the poses of both keyframes, or cuts the edge.
+void Localizer::choose_candidate_as_in_map(std::size_t b) {
   if (map_.component[b - 1] != verification_.active_component()) {
     map_.edge_choice[b - 1] = kCut;
     return;

@@ -16,33 +16,40 @@
 
 namespace shapemap {
 
-/// Where the robot is after the last keyframe that is certain.
+/// What is known of the robot's place after the last keyframe that is certain.
 struct LocalizationState {
   bool is_lost = false;
-  double log_odds = kLocalization.places.sure_of_place;  ///< that it is where it is expected
+  double log_odds = kLocalization.places.sure_of_place;  ///< log odds that the robot is where it is expected
 };
 
-/// Goes along keyframes that are new to a map, puts them in their places there, and tells which it knows again. What it
-/// knows counts only when what comes after agrees: of the robot's being where it is expected, each keyframe that is
-/// known raises the odds, and each that shows something else there lowers them. When they are too low, or after a link
-/// in doubt that neither of them decides, the robot is lost: all places that it may be at are tried.
+/// Where a Localizer starts.
+struct LocalizationStart {
+  std::size_t active_component = 0;  ///< the component that the robot was surely in
+  std::size_t first = 0;             ///< the first keyframe that is new to the map
+  LocalizationState state;           ///< the state at the keyframe before it
+};
+
+/// Localizes keyframes that are new to a map, one after the other, and finds those that the map can replace. A single
+/// recognised keyframe proves little, so the log odds that the robot is where it is expected are followed: each
+/// keyframe that the map recognises raises them, and each that shows something else than the map lowers them. When they
+/// are too low, or after a doubtful edge that keyframes do not decide, the robot is lost, and all places where it may
+/// be are tried.
 class Localizer {
  public:
-  /// `map` has links and a place for all keyframes; those before `first` are in theirs. `home` is the component that
-  /// the robot was sure to be in; `bearings` are those at keyframe `first - 1`. `loops` are places where keyframes may
-  /// have been before.
-  Localizer(const KeyframeGraph& graph, const RobustOptions& options, std::size_t active_component, std::size_t first,
-            LocalizationState state, const std::vector<EdgeCandidate>& loops, OptimizedMap& map);
+  /// `map` has an entry for each edge and keyframe; the keyframes before `start.first` have their poses. `loops` are
+  /// earlier places where keyframes may be. All but `start` must outlive the object.
+  Localizer(const KeyframeGraph& graph, const RobustOptions& options, const LocalizationStart& start,
+            const std::vector<EdgeCandidate>& loops, OptimizedMap& map);
 
-  /// Along keyframes up to `last`; returns where to go on next time, with the bearings() there: what is not certain yet
-  /// is looked at anew then.
+  /// Localizes the keyframes before `last`. Returns the first that is not certain yet: from there, and with the state()
+  /// there, another call must start over.
   std::size_t go(std::size_t last);
 
-  /// Puts a keyframe where the link to it says.
+  /// Places a keyframe by the odometry edge to it.
   void expect(std::size_t b);
 
   const LocalizationState& state() const { return state_; }
-  /// Per keyframe: what it was known by.
+  /// Returns for each keyframe the one of the map that can replace it, where there is one.
   std::vector<std::optional<ReplacementKeyframe>>& redundant() { return redundant_; }
 
  private:
@@ -52,17 +59,17 @@ class Localizer {
   bool step(std::size_t b);
   void make_certain(std::size_t end);
   void forget_pending();
-  void know(std::size_t b, ReplacementKeyframe replacement);
-  void hold_back_from(std::size_t b);
+  void replace(std::size_t b, ReplacementKeyframe replacement);
+  void constrain_edges_before(std::size_t b);
 
   bool decide(std::size_t b);
   void get_lost();
-  void find_way(std::size_t last);
+  void relocalize(std::size_t last);
   std::size_t end_of_stretch(std::size_t first, std::size_t last) const;
   std::size_t place(std::size_t first, std::size_t last);
   std::vector<std::pair<std::size_t, Pose2>> candidates(std::size_t first, std::size_t last) const;
-  void settle_in(std::size_t first, PlacedStretch stretch);
-  void take_edge_as_in_map(std::size_t b);
+  void accept(std::size_t first, PlacedStretch stretch);
+  void choose_candidate_as_in_map(std::size_t b);
 
   const KeyframeGraph& graph_;
   const RobustOptions& options_;
@@ -71,13 +78,13 @@ class Localizer {
   PlaceVerification verification_;
   std::vector<std::optional<ReplacementKeyframe>> redundant_;
 
-  LocalizationState state_;  ///< at keyframe open_ - 1
-  double log_odds_;          ///< that the robot is where it is expected now
+  LocalizationState state_;  ///< the state at keyframe open_ - 1
+  double log_odds_;          ///< log odds that the robot is where it is expected now
   std::size_t open_;         ///< the first keyframe that is not certain yet
-  std::size_t good_;         ///< the first that will not be without those to come
-  std::vector<std::pair<std::size_t, ReplacementKeyframe>> pending_;  ///< known again from there on, if it is true
-  std::size_t last_telling_;                                          ///< that raised or lowered the odds, or the first
-  std::size_t last_known_;                                            ///< or the one before the first
+  std::size_t good_;         ///< the first keyframe that only later ones can make certain
+  std::vector<std::pair<std::size_t, ReplacementKeyframe>> pending_;  ///< replacements from open_ on, not certain yet
+  std::size_t last_informative_;  ///< the last keyframe that changed the odds, or the first
+  std::size_t last_replaced_;     ///< the last keyframe with a replacement, or the one before the first
 };
 
 }  // namespace shapemap

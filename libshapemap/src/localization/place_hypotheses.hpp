@@ -8,16 +8,16 @@
 
 namespace shapemap {
 
-/// Which of several places of a map a stretch of the chain is at.
+/// Decides at which of several places of a map a stretch of successive keyframes is.
 class PlaceHypotheses {
  public:
-  /// True when it is the best so far.
+  /// Adds a place that was tried; returns true when it is the best so far.
   bool add(PlacedStretch laid);
 
-  /// Whether it was tried at all with this keyframe of it, counted from its first, at this place.
+  /// Returns whether a tried place puts this keyframe, counted from the first of the stretch, at this pose.
   bool has(std::size_t keyframe, const Pose2& map_from_keyframe) const;
 
-  /// Whether the best is right: not by itself only, but much more likely than any other that was tried.
+  /// Returns whether the best place is likely in itself, and much likelier than any other that was tried.
   bool is_sure() const;
   const PlacedStretch& best() const { return tried_[best_]; }
 

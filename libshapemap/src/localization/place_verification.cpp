@@ -19,8 +19,8 @@ Pose2 pose_by(const OptimizedMap& map, const ReplacementKeyframe& replacement) {
 
 PlaceEvidence PlaceVerification::look(const OptimizedMap& map, std::size_t b, std::size_t end) const {
   const std::vector<std::size_t> there = at_place(map, b, end);
-  std::vector<ReplacementKeyframe> found = replacements_for(graph_, map.map_from_keyframe, b, there, 1, options_);
-  // Those just before it show the same, or do not, wherever the two are.
+  std::vector<ReplacementKeyframe> found = replacements_for(graph_, map.map_from_keyframe, {b, there, 1}, options_);
+  // The keyframes just before `b` show the same, or do not, at whatever place the two are.
   const auto tells = [&](std::size_t a) { return a + kLocalization.redundancy.keyframes_in_use < b; };
   if (!found.empty())
     return {std::move(found.front()), tells(found.front().keyframe) ? kLocalization.places.known_tells : 0.0};
@@ -34,7 +34,7 @@ PlacedStretch PlaceVerification::lay(OptimizedMap& map, std::size_t first, std::
   const double apart_m = kInference.search.components_apart_m;
   laid.map_from_keyframe.assign(last - first, {apart_m, apart_m, 0.0});
   laid.sure_begin = laid.sure_end = seed - first;
-  double log_odds = kLocalization.places.sure_of_place;  // of one way from the seed
+  double log_odds = kLocalization.places.sure_of_place;  // evidence along one direction from the seed
   const auto lay_one = [&](std::size_t b, const Pose2& expected) {
     map.map_from_keyframe[b] = expected;
     PlaceEvidence seen = look(map, b, first);
@@ -60,11 +60,11 @@ PlacedStretch PlaceVerification::lay(OptimizedMap& map, std::size_t first, std::
   return laid;
 }
 
-/// Of those that stay, the nearest to where `b` is expected.
+/// Returns the keyframes nearest to the expected pose of `b`, without the excluded ones.
 std::vector<std::size_t> PlaceVerification::at_place(const OptimizedMap& map, std::size_t b, std::size_t end) const {
   std::vector<std::pair<double, std::size_t>> near;
   for (std::size_t a = 0; a < end; ++a) {
-    if (map.component[a] != active_component_ || is_gone_[a]) continue;
+    if (map.component[a] != active_component_ || is_excluded_[a]) continue;
     const Pose2 a_from_b = inverse(map.map_from_keyframe[a]) * map.map_from_keyframe[b];
     if (is_within(a_from_b, options_.keyframes.near())) {
       near.emplace_back(a_from_b.translation().norm(), a);

@@ -12,42 +12,42 @@
 
 namespace shapemap {
 
-/// What the map says of a keyframe at a place.
+/// The evidence of the map for the pose of a keyframe.
 struct PlaceEvidence {
-  std::optional<ReplacementKeyframe> replacement;  ///< where it is known
-  double log_odds = 0.0;  ///< that the place is right: above 0 where it is known, below 0 where something
-                          ///< else was seen, and 0 where nobody has been
+  std::optional<ReplacementKeyframe> replacement;  ///< a keyframe of the map that shows the same, if there is one
+  double log_odds = 0.0;  ///< evidence for the pose: above 0 with a replacement, below 0 where the map shows
+                          ///< something else, and 0 where the map has no keyframes
 };
 
-/// A stretch of the chain, laid at a place of the map.
+/// A stretch of successive keyframes at a place of the map. The evidence may fall so low that the rest is left out.
 struct PlacedStretch {
-  double log_odds = 0.0;                 ///< that the place is right, of all its keyframes
-  std::vector<Pose2> map_from_keyframe;  ///< far away those that were not looked at, as it was soon seen to be wrong
-  std::vector<std::optional<ReplacementKeyframe>> redundant;
-  std::size_t sure_begin = 0;  ///< it is as it was laid from this one of its keyframes,
-  std::size_t sure_end = 0;    ///< up to before this one
+  double log_odds = 0.0;                 ///< evidence for the place, summed over the keyframes
+  std::vector<Pose2> map_from_keyframe;  ///< poses; those of keyframes that are left out are far away
+  std::vector<std::optional<ReplacementKeyframe>> redundant;  ///< the replacement of each keyframe, if there is one
+  std::size_t sure_begin = 0;                                 ///< the first of its keyframes whose pose is sure
+  std::size_t sure_end = 0;                                   ///< the end of those whose pose is sure
 };
 
-/// Holds keyframes against the keyframes of a map, of which only the component `home` counts.
+/// Compares keyframes with the keyframes of the active component of a map.
 class PlaceVerification {
  public:
   PlaceVerification(const KeyframeGraph& graph, const RobustOptions& options, std::size_t active_component)
       : graph_(graph),
         options_(options),
         active_component_(active_component),
-        is_gone_(graph.keyframes.size(), false) {}
+        is_excluded_(graph.keyframes.size(), false) {}
 
-  /// Keyframe `b`, where `map` has it, against those before `end`.
+  /// Compares keyframe `b`, at its pose in `map`, with the keyframes before `end`.
   PlaceEvidence look(const OptimizedMap& map, std::size_t b, std::size_t end) const;
 
-  /// Keyframes `first` to before `last`, from `seed` on in both directions: each where the link to the one before puts
-  /// it, and then where the map knows it; against those before `first`. What `map` has for them is overwritten.
+  /// Places keyframes `first` to before `last`, from `seed` on in both directions: each by the edge to the one before,
+  /// and then by its replacement among the keyframes before `first`. Their poses in `map` are overwritten.
   PlacedStretch lay(OptimizedMap& map, std::size_t first, std::size_t last, std::size_t seed,
                     const Pose2& map_from_seed) const;
 
-  /// Another stands for keyframe `b`: it does not stand for others.
-  void let_go(std::size_t b) { is_gone_[b] = true; }
-  void keep(std::size_t b) { is_gone_[b] = false; }
+  /// Excludes keyframe `b`, which another replaces, from the keyframes that can replace others.
+  void exclude(std::size_t b) { is_excluded_[b] = true; }
+  void include(std::size_t b) { is_excluded_[b] = false; }
 
   std::size_t active_component() const { return active_component_; }
 
@@ -57,13 +57,13 @@ class PlaceVerification {
   const KeyframeGraph& graph_;
   const RobustOptions& options_;
   std::size_t active_component_;
-  std::vector<bool> is_gone_;
+  std::vector<bool> is_excluded_;
 };
 
-/// What link `b - 1` to `b` says where `map` takes one of its hypotheses.
+/// Returns the relative pose of the candidate that `map` takes of the edge to keyframe `b`, which must not be cut.
 const Pose2& edge_in_map(const KeyframeGraph& graph, const OptimizedMap& map, std::size_t b);
 
-/// Where a keyframe is by the one that stands for it.
+/// Returns the pose of a keyframe by the one that replaces it.
 Pose2 pose_by(const OptimizedMap& map, const ReplacementKeyframe& replacement);
 
 }  // namespace shapemap

@@ -13,7 +13,7 @@
 namespace shapemap {
 namespace {
 
-/// For each keyframe the earlier ones at its place, nearest first.
+/// Returns for each keyframe the earlier ones at its place, nearest first.
 std::vector<std::vector<std::size_t>> earlier_at_place(const OptimizedMap& map, const KeyframeOptions& options) {
   std::vector<std::vector<std::pair<double, std::size_t>>> near(map.map_from_keyframe.size());
   for (const auto& [a, b] : near_pairs(map.map_from_keyframe, options.step_m)) {
@@ -29,7 +29,7 @@ std::vector<std::vector<std::size_t>> earlier_at_place(const OptimizedMap& map, 
   return earlier;
 }
 
-/// Those that follow or precede such a one closely.
+/// Marks the unknown keyframes, and those that follow or precede one closely.
 std::vector<bool> near(const std::vector<bool>& is_unknown) {
   const std::size_t near = kLocalization.redundancy.in_doubt_near;
   std::vector<bool> result(is_unknown.size(), false);
@@ -44,12 +44,12 @@ std::vector<bool> near(const std::vector<bool>& is_unknown) {
 }  // namespace
 
 std::vector<ReplacementKeyframe> replacements_for(const KeyframeGraph& graph,
-                                                  const std::vector<Pose2>& map_from_keyframe, std::size_t b,
-                                                  const std::vector<std::size_t>& earlier, std::size_t most,
-                                                  const RobustOptions& options) {
+                                                  const std::vector<Pose2>& map_from_keyframe,
+                                                  const ReplacementQuery& query, const RobustOptions& options) {
+  const std::size_t b = query.keyframe;
   std::vector<ReplacementKeyframe> fitting;
-  for (const std::size_t a : earlier) {
-    if (fitting.size() == most) break;
+  for (const std::size_t a : query.earlier) {
+    if (fitting.size() == query.most) break;
     const Pose2 expected = inverse(map_from_keyframe[a]) * map_from_keyframe[b];
     const MatchCandidate pose =
         refined_candidate(*graph.keyframes[a].view, *graph.keyframes[b].view, expected, options.matcher.search);
@@ -59,52 +59,52 @@ std::vector<ReplacementKeyframe> replacements_for(const KeyframeGraph& graph,
   return fitting;
 }
 
-std::vector<bool> settled_keyframes(const KeyframeGraph& graph, const OptimizedMap& map) {
+std::vector<bool> cullable_keyframes(const KeyframeGraph& graph, const OptimizedMap& map) {
   const std::size_t count = graph.keyframes.size();
   std::vector<bool> sure(graph.edges.size());
   for (std::size_t i = 0; i < sure.size(); ++i) {
     sure[i] = map.edge_choice[i] != kCut &&
               (map.loop_constrained[i] || stated_probability(graph.edges[i]) >= kLocalization.redundancy.sure_edge);
   }
-  std::vector<bool> settled(count, false);
+  std::vector<bool> cullable(count, false);
   for (std::size_t i = 1; i + kLocalization.redundancy.keyframes_in_use < count; ++i) {
-    settled[i] = sure[i - 1] && sure[i] && graph.keyframes[i].sweep_views.empty();
+    cullable[i] = sure[i - 1] && sure[i] && graph.keyframes[i].sweep_views.empty();
   }
-  return settled;
+  return cullable;
 }
 
 RedundantKeyframes find_redundant_keyframes(const KeyframeGraph& graph, const OptimizedMap& map,
                                             const RobustOptions& options, int threads) {
-  const std::vector<bool> settled = settled_keyframes(graph, map);
+  const std::vector<bool> cullable = cullable_keyframes(graph, map);
   const std::vector<std::vector<std::size_t>> earlier = earlier_at_place(map, options.keyframes);
-  std::vector<std::vector<ReplacementKeyframe>> fitting(settled.size());
-  parallel_for(settled.size(), threads, [&](std::size_t b) {
-    if (settled[b])
-      fitting[b] = replacements_for(graph, map.map_from_keyframe, b, earlier[b],
-                                    kLocalization.redundancy.replacements_tried, options);
+  std::vector<std::vector<ReplacementKeyframe>> fitting(cullable.size());
+  parallel_for(cullable.size(), threads, [&](std::size_t b) {
+    if (cullable[b])
+      fitting[b] = replacements_for(graph, map.map_from_keyframe,
+                                    {b, earlier[b], kLocalization.redundancy.replacements_tried}, options);
   });
   RedundantKeyframes result;
-  result.of_keyframe.resize(settled.size());
-  std::vector<bool> is_unknown(settled.size(), false);
-  for (std::size_t b = 0; b < settled.size(); ++b) {
-    if (!settled[b]) continue;
+  result.of_keyframe.resize(cullable.size());
+  std::vector<bool> is_unknown(cullable.size(), false);
+  for (std::size_t b = 0; b < cullable.size(); ++b) {
+    if (!cullable[b]) continue;
     const auto is_long_before = [&](std::size_t a) { return a + kLocalization.redundancy.keyframes_in_use < b; };
     const bool again = std::any_of(earlier[b].begin(), earlier[b].end(), is_long_before);
     const bool known = std::any_of(fitting[b].begin(), fitting[b].end(), [&](const ReplacementKeyframe& candidate) {
       return is_long_before(candidate.keyframe);
     });
-    is_unknown[b] = again && !known &&
-                    fitting[b].size() < kLocalization.redundancy.replacements_tried;  // or else not all were tried
+    is_unknown[b] =
+        again && !known && fitting[b].size() < kLocalization.redundancy.replacements_tried;  // so that all were tried
     if (known) ++result.num_known;
     if (known || is_unknown[b]) ++result.num_again;
     for (const ReplacementKeyframe& candidate : fitting[b]) {
-      if (result.of_keyframe[candidate.keyframe]) continue;  // it is not kept itself
+      if (result.of_keyframe[candidate.keyframe]) continue;  // it is culled itself
       result.of_keyframe[b] = candidate;
       break;
     }
   }
   result.is_in_doubt = near(is_unknown);
-  for (std::size_t b = 0; b < settled.size(); ++b) {
+  for (std::size_t b = 0; b < cullable.size(); ++b) {
     if (result.is_in_doubt[b]) result.of_keyframe[b].reset();
   }
   return result;

@@ -9,36 +9,44 @@
 #include "inference/optimized_map.hpp"
 #include "shapemap/inference/robust_options.hpp"
 
-/// Where a place is visited again, the keyframes that it has are enough: so there are as many as the area needs, and
-/// not as the way was long.
+/// A place that is visited again needs no more keyframes than it has, so that their number grows with the area and not
+/// with the length of the path.
 namespace shapemap {
 
-/// An earlier keyframe that can stand for another.
+/// An earlier keyframe that can replace another.
 struct ReplacementKeyframe {
   std::size_t keyframe = 0;
-  MatchCandidate pose;  ///< of the other, in its frame
+  MatchCandidate pose;  ///< the pose of the replaced keyframe in the frame of the earlier one
 };
 
-/// Those of `earlier`, in their order, that can stand for keyframe `b` where the map has the two; at most `most`.
+/// A keyframe, and the earlier ones that may replace it.
+struct ReplacementQuery {
+  std::size_t keyframe;
+  const std::vector<std::size_t>& earlier;
+  std::size_t most;  ///< the search ends when so many are found
+};
+
+/// Returns those of `query.earlier`, in their order, that show the same as the keyframe at the poses of the map.
 std::vector<ReplacementKeyframe> replacements_for(const KeyframeGraph& graph,
-                                                  const std::vector<Pose2>& map_from_keyframe, std::size_t b,
-                                                  const std::vector<std::size_t>& earlier, std::size_t most,
-                                                  const RobustOptions& options);
+                                                  const std::vector<Pose2>& map_from_keyframe,
+                                                  const ReplacementQuery& query, const RobustOptions& options);
 
-/// Per keyframe: whether it may go when another can stand for it. Those at doubtful links stay, those with several
-/// sub-scans, and the last few.
-std::vector<bool> settled_keyframes(const KeyframeGraph& graph, const OptimizedMap& map);
+/// Returns for each keyframe whether it may be culled when another can replace it. The last few keyframes, those at
+/// doubtful edges, and those with several sweeps must stay.
+std::vector<bool> cullable_keyframes(const KeyframeGraph& graph, const OptimizedMap& map);
 
-/// What a map says of each of its keyframes at the place of others.
+/// The comparison of the keyframes of a map with earlier ones at the same place.
 struct RedundantKeyframes {
-  std::vector<std::optional<ReplacementKeyframe>> of_keyframe;  ///< which one can stand for it, where it may go
-  std::vector<bool> is_in_doubt;  ///< near one that shows something else than its place did before
-  std::size_t num_again = 0;      ///< keyframes at a place where the robot had been long before
-  std::size_t num_known = 0;      ///< those of them that show the same as it did then
+  std::vector<std::optional<ReplacementKeyframe>> of_keyframe;  ///< the replacement of each that may be culled
+  std::vector<bool> is_in_doubt;  ///< whether a keyframe nearby shows something else than an earlier one at its place
+  std::size_t num_again = 0;      ///< number of keyframes at a place where the robot had been long before
+  std::size_t num_known = 0;      ///< number of those that show the same as an earlier one
 
-  /// Of a map that is right, nearly all do; where rows of like rooms are laid on each other, a fourth does not.
+  /// Returns whether so large a share is known as in a right map: nearly all are there, while a fourth is not where
+  /// rows of similar rooms are wrongly laid on each other.
   bool are_of_right_map() const;
 };
+/// Compares all keyframes with the earlier ones at their places.
 RedundantKeyframes find_redundant_keyframes(const KeyframeGraph& graph, const OptimizedMap& map,
                                             const RobustOptions& options, int threads);
 

@@ -10,8 +10,8 @@
 namespace shapemap {
 namespace {
 
-/// What the chain says of links that the map does not know.
-void add_links(const KeyframeGraph& graph, OptimizedMap& map) {
+/// Adds the edges that the map does not have, with the candidates that the graph chose.
+void add_edges(const KeyframeGraph& graph, OptimizedMap& map) {
   for (std::size_t i = map.edge_choice.size(); i < graph.edges.size(); ++i) {
     const OdometryEdge& edge = graph.edges[i];
     map.edge_choice.push_back(edge.candidates.empty() ? kCut : static_cast<int>(edge.choice.candidate));
@@ -19,14 +19,14 @@ void add_links(const KeyframeGraph& graph, OptimizedMap& map) {
   }
 }
 
-void add_link_constraints(const KeyframeGraph& graph, std::size_t first, OptimizedMap& map) {
+void add_edge_constraints(const KeyframeGraph& graph, std::size_t first, OptimizedMap& map) {
   for (std::size_t i = first; i < graph.edges.size(); ++i) {
     if (map.edge_choice[i] == kCut) continue;
     map.constraints.push_back(edge_constraint(graph, i, static_cast<std::size_t>(map.edge_choice[i])));
   }
 }
 
-/// The last of the first `end` keyframes of which the place is certain: others hang together with it.
+/// Returns the last of the first `end` keyframes whose pose is certain because its component has others.
 std::size_t last_certain(const OptimizedMap& map, std::size_t end) {
   std::vector<std::size_t> size(map.component.size(), 0);
   for (const std::size_t component : map.component) ++size[component];
@@ -51,25 +51,25 @@ RevisitTracker::Followed RevisitTracker::follow(const KeyframeGraph& graph, cons
   const std::size_t last = count - std::min(count, kLocalization.redundancy.keyframes_in_use);
   Followed result;
   result.map = settled_;
-  add_links(graph, result.map);
+  add_edges(graph, result.map);
   result.map.map_from_keyframe.resize(count);
   for (std::size_t i = first; i < count; ++i) result.map.component.push_back(i);
-  const auto active_component =
+  const auto active_keyframe =
       std::lower_bound(graph.keyframes.begin(), graph.keyframes.end(), active_scan_,
                        [](const Keyframe& k, std::size_t scan) { return k.scan_index < scan; });
-  const std::size_t home_component =
-      result.map.component[static_cast<std::size_t>(active_component - graph.keyframes.begin())];
-  Localizer follower(graph, options_, home_component, first, state_, loops, result.map);
-  result.num_followed = follower.go(std::max(first, last));
-  for (std::size_t b = result.num_followed; b < count; ++b) follower.expect(b);
-  add_link_constraints(graph, first - 1, result.map);
-  state_ = follower.state();
-  result.redundant = std::move(follower.redundant());
-  // A link that may still change must not become what the map says: it would when the keyframe before it went.
+  const std::size_t active_component =
+      result.map.component[static_cast<std::size_t>(active_keyframe - graph.keyframes.begin())];
+  Localizer localizer(graph, options_, {active_component, first, state_}, loops, result.map);
+  result.num_followed = localizer.go(std::max(first, last));
+  for (std::size_t b = result.num_followed; b < count; ++b) localizer.expect(b);
+  add_edge_constraints(graph, first - 1, result.map);
+  state_ = localizer.state();
+  result.redundant = std::move(localizer.redundant());
+  // An edge that may still change must not be fixed as it is in the map, as culling the keyframe before it would do.
   if (state_.is_lost) result.redundant[result.num_followed - 1].reset();
-  const std::vector<bool> may_go = settled_keyframes(graph, result.map);
+  const std::vector<bool> cullable = cullable_keyframes(graph, result.map);
   for (std::size_t b = first; b < count; ++b) {
-    if (!may_go[b]) result.redundant[b].reset();
+    if (!cullable[b]) result.redundant[b].reset();
   }
   return result;
 }

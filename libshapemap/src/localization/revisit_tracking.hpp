@@ -14,34 +14,34 @@
 
 namespace shapemap {
 
-/// Follows the chain from the end of a settled map on, and knows places again that have a keyframe: where the robot is
-/// sure to be in the map, no more needs to be solved for that.
+/// Localizes new keyframes in an optimised map, and finds those that the map can replace. Where the robot is surely in
+/// the map, this needs no optimisation of the whole graph.
 class RevisitTracker {
  public:
   explicit RevisitTracker(const RobustOptions& options) : options_(options) {}
 
-  /// `map` is solved for all keyframes of the chain; those after the first `num_settled` may still change.
+  /// Starts with `map`, which is optimised for all keyframes; those after the first `num_settled` may still change.
   void start(const KeyframeGraph& graph, const OptimizedMap& map, std::size_t num_settled);
 
-  /// All of the chain, with what `redundant` knows again in its place. Those keyframes are still to be retired, and the
-  /// map that is left then to be given to renew().
+  /// The map of all keyframes. The caller must cull the redundant ones, and give the rest of the map to renew().
   struct Followed {
     OptimizedMap map;
-    std::vector<std::optional<ReplacementKeyframe>> redundant;  ///< per keyframe: of those that may go
+    std::vector<std::optional<ReplacementKeyframe>> redundant;  ///< the replacement of each keyframe that may be culled
     std::size_t num_followed = 0;  ///< the keyframes after the first so many may still change
   };
+  /// Localizes the keyframes that the map does not have. `loops` are used when the robot is lost.
   Followed follow(const KeyframeGraph& graph, const std::vector<EdgeCandidate>& loops);
 
-  /// Whether loops help: the robot does not know where it is in the map.
+  /// Returns whether the robot's place in the map is unknown, so that loop candidates would help.
   bool is_lost() const { return state_.is_lost; }
 
-  /// Without the keyframes that were retired; the last `num_open` may still change.
+  /// Replaces the map by one without the culled keyframes; the last `num_open` may still change.
   void renew(OptimizedMap map, std::size_t num_open);
 
  private:
   const RobustOptions& options_;
   OptimizedMap settled_;
-  std::size_t active_scan_ = 0;  ///< of the first keyframe of the part of the map that the robot was sure to be in
+  std::size_t active_scan_ = 0;  ///< the scan of the first keyframe of the component that the robot was surely in
   LocalizationState state_;
 };
 

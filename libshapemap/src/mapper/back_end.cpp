@@ -21,10 +21,10 @@ namespace {
 
 constexpr std::size_t kNever = std::numeric_limits<std::size_t>::max();
 
-/// Each preview of the map has half as many keyframes again: all together cost a few times as much as the last.
+/// Each preview has half as many keyframes again, so that all previews together cost a few times as much as the last.
 std::size_t preview_after(std::size_t num_keyframes) { return num_keyframes + (num_keyframes + 1) / 2; }
 
-/// After an interrupt nothing more is looked for; what came until then is still made one map.
+/// Never asks to stop: after an interrupt, the map of what was found must still be finished.
 class Finishing : public RunObserver {
  public:
   explicit Finishing(RunObserver& observer) : observer_(observer) {}
@@ -75,7 +75,7 @@ BackEnd::BackEnd(BackEndContext context) : context_(std::move(context)), revisit
   const KeyframeOptions& keyframes = context_.options.robust.keyframes;
   cull_at_ = std::max(static_cast<std::size_t>(keyframes.settle_at), 4 * kLocalization.redundancy.keyframes_in_use);
   next_optimization_ = closes_loops() && keyframes.settle_at > 0 ? cull_at_ : kNever;
-  // Without loops, what is no longer needed is let go now and then.
+  // Without loops, updates only release memory.
   next_update_ = closes_loops() ? next_optimization_ : cull_at_;
   next_preview_ = closes_loops() && context_.publish ? kMapper.updates.first_preview : kNever;
   if (next_preview_ != kNever) preview_cache_.emplace(context_.cache);
@@ -128,7 +128,7 @@ void BackEnd::update() {
   context_.events.on_stage("chain");
 }
 
-/// Chooses a candidate of each edge by its neighbours, and by how the sensor usually moves.
+/// Chooses a candidate of each edge by the neighbouring edges and by the learned motion prior.
 void BackEnd::choose_odometry() {
   const Stopwatch watch;
   const RobustOptions& options = context_.options.robust;
@@ -137,7 +137,7 @@ void BackEnd::choose_odometry() {
   choose_candidates(graph_);
   const std::vector<std::size_t> completed = rescore_by_motion(options, threads, graph_);
   choose_candidates(graph_);
-  if (!closes_loops()) let_views_go();
+  if (!closes_loops()) release_views();
   result_.times.align_s += watch.seconds();
   for (const std::size_t i : completed) {
     const OdometryEdge& edge = graph_.edges[i];
@@ -147,14 +147,14 @@ void BackEnd::choose_odometry() {
   }
 }
 
-/// But for those of the last keyframes, which scores of edges to come need.
-void BackEnd::let_views_go() {
+/// Keeps the views of the last keyframes only, which the scores of coming edges need.
+void BackEnd::release_views() {
   const std::size_t needed = static_cast<std::size_t>(context_.options.robust.front_end.more_references) + 2;
   for (std::size_t i = 0; i + needed < graph_.keyframes.size(); ++i) graph_.keyframes[i].view.reset();
 }
 
-/// False where the map is not right yet: what it has at one place does not look the same. The more scans have come, the
-/// more loops tell.
+/// Returns false where the map is not right yet, because scans of one place do not look the same. Later loops may
+/// correct it.
 bool BackEnd::optimize_and_cull() {
   const RobustOptions& options = context_.options.robust;
   const std::size_t num_settled = graph_.keyframes.size() - kLocalization.redundancy.keyframes_in_use;
@@ -167,7 +167,7 @@ bool BackEnd::optimize_and_cull() {
   const RedundantKeyframes redundant = find_redundant_keyframes(graph_, map, options, context_.options.run.threads);
   if (!redundant.are_of_right_map()) return false;
   for (std::size_t b = 0; b < map.component.size(); ++b) {
-    if (redundant.is_in_doubt[b]) map.component[b] = b;  // the robot is not to be followed there
+    if (redundant.is_in_doubt[b]) map.component[b] = b;  // the robot must not be localized there
   }
   cull(redundant.of_keyframe, map);
   revisits_.start(graph_, map, graph_.keyframes.size() - kLocalization.redundancy.keyframes_in_use);
@@ -175,7 +175,7 @@ bool BackEnd::optimize_and_cull() {
   return true;
 }
 
-/// Puts the new keyframes where the map knows their places.
+/// Localizes the new keyframes in the map, and culls the redundant ones.
 void BackEnd::follow() {
   if (revisits_.is_lost()) {
     find_loops(graph_, graph_.keyframes.size() - kLocalization.redundancy.keyframes_in_use, loop_search(execution()),
@@ -196,7 +196,7 @@ void BackEnd::tell_localization() {
   context_.events.on_localization({graph_.keyframes.back().scan_index, is_lost_});
 }
 
-/// An edge that goes with its keyframe gets its verdict now.
+/// Judges the edges of culled keyframes now, since they leave the graph with them.
 void BackEnd::cull(const std::vector<std::optional<ReplacementKeyframe>>& redundant, OptimizedMap& map) {
   for (std::size_t i = 0; i < graph_.edges.size(); ++i) {
     const bool stays = !redundant[i] && !redundant[i + 1];
@@ -219,7 +219,7 @@ void BackEnd::publish(const KeyframeGraph& graph, const OptimizedMap& map) const
   if (context_.publish) context_.publish(map_snapshot(graph, map, result_.scans.size()));
 }
 
-/// Publishes a map of what there is so far, by a copy of the graph: the result of finish() must not depend on it.
+/// Publishes a map of the keyframes so far, made from a copy of the graph, because finish() must not depend on it.
 void BackEnd::preview() {
   const RobustOptions& options = context_.options.robust;
   Quiet quiet(context_.events);

@@ -21,39 +21,39 @@
 
 namespace shapemap {
 
-/// What the back end of a mapper works with. `cache` may be null; a `publish` that is empty is not called.
+/// The surroundings of a mapper's back end. `cache` may be null; a `publish` that is empty is not called.
 struct BackEndContext {
   const MappingOptions& options;
   MappingEvents& events;
   MatchCache* cache = nullptr;
-  /// Receives a map whenever the graph was solved. Maps that are only published change nothing of the result.
+  /// Receives a map after each optimisation of the graph. Whether maps are published does not change the result.
   std::function<void(Map)> publish;
 };
 
-/// Grows the graph of keyframes by what the front end has tracked, and makes the map of it. When there are many
-/// keyframes, it closes loops, and culls those that the map has twice. From then on it follows the robot in that map,
-/// culls keyframes at places that are known again soon, and solves for all of it again when there are many more.
+/// Adds the keyframes of the front end to the graph, and makes the map of it. When there are many keyframes, it closes
+/// loops, and culls redundant keyframes. From then on it localizes the robot in that map, culls new keyframes at known
+/// places, and optimises the whole graph again when it has many more keyframes.
 ///
-/// When it does so depends on the scans that came, and on nothing else.
+/// The moments of this work depend on the scans alone, so that the result is reproducible.
 class BackEnd {
  public:
   explicit BackEnd(BackEndContext context);
 
   void add(TrackedScan scan);
 
-  /// All of the map, from all that came. What is found out when the observer asks to stop is used; no more is then
-  /// looked for.
+  /// Returns the map of all scans. When the observer asks to stop, nothing more is searched, and the map is made of
+  /// what was found.
   MapResult finish();
 
  private:
   Execution execution() const { return {context_.options.run.threads, context_.events}; }
-  /// While previews are made, what they match is kept for those to come, and for the result.
+  /// While previews are made, their matches are kept for the next previews, and for the result.
   MatchCache* cache() { return preview_cache_ ? &*preview_cache_ : context_.cache; }
   LoopSearch loop_search(const Execution& execution);
   bool closes_loops() const { return context_.options.robust.loops.close_loops; }
   void update();
   void choose_odometry();
-  void let_views_go();
+  void release_views();
   bool optimize_and_cull();
   void follow();
   void cull(const std::vector<std::optional<ReplacementKeyframe>>& redundant, OptimizedMap& map);
@@ -63,16 +63,16 @@ class BackEnd {
 
   BackEndContext context_;
   MapResult result_;
-  std::vector<std::size_t> num_sweeps_;  ///< of each scan
+  std::vector<std::size_t> num_sweeps_;  ///< number of sweeps of each scan
   KeyframeGraph graph_;
   LoopCandidates loops_;
   RevisitTracker revisits_;
   bool is_following_ = false;
   bool is_lost_ = false;
-  std::size_t cull_at_;            ///< so many keyframes are needed before any is culled
-  std::size_t next_optimization_;  ///< so many keyframes make the graph be solved
-  std::size_t next_update_;        ///< so many keyframes make it be looked at
-  std::size_t next_preview_;       ///< so many keyframes make a map be published while none was solved for
+  std::size_t cull_at_;            ///< number of keyframes before any is culled
+  std::size_t next_optimization_;  ///< number of keyframes at which the graph is optimised next
+  std::size_t next_update_;        ///< number of keyframes at which the next update is due
+  std::size_t next_preview_;       ///< number of keyframes of the next preview; none follows the first optimisation
   LoopCandidates preview_loops_;
   std::optional<MemoryMatchCache> preview_cache_;
 };

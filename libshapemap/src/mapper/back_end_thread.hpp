@@ -12,21 +12,21 @@
 
 namespace shapemap {
 
-/// A back end that works in a thread of its own, on the scans in their order: what it makes of them is what it would
-/// make in the calling thread.
+/// A back end that works in a thread of its own, on the scans in their order, so that its result is the same as in the
+/// calling thread.
 class BackEndThread {
  public:
-  /// `events` are those of `context`.
+  /// `events` must be those of `context`.
   BackEndThread(BackEndContext context, BackgroundEvents& events);
   /// Stops the work early.
   ~BackEndThread();
   BackEndThread(const BackEndThread&) = delete;
   BackEndThread& operator=(const BackEndThread&) = delete;
 
-  /// Waits while very many scans wait for their turn. Throws what ended the work in the thread.
+  /// Blocks while the queue of scans is full. Rethrows the exception that ended the work in the thread.
   void add(TrackedScan scan);
 
-  /// Waits for the scans that wait, and makes the map of all.
+  /// Waits until the queue is empty, and returns the map of all scans.
   MapResult finish();
 
  private:

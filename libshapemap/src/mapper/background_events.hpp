@@ -8,15 +8,15 @@
 
 namespace shapemap {
 
-/// Passes the events of two threads on, one at a time. What belongs to the calling thread alone (stages, progress, and
-/// the question whether to go on) is passed on only once the other thread has ended.
+/// Passes the events of two threads on, one at a time. Stages, progress, and the question whether to go on belong to
+/// the calling thread alone, and are passed on only after the other thread has ended.
 class BackgroundEvents : public MappingEvents {
  public:
   explicit BackgroundEvents(MappingEvents& events) : events_(events) {}
 
   /// Ends the work of the other thread early.
   void stop() { is_stopped_ = true; }
-  /// The other thread has ended.
+  /// Tells the object that the other thread has ended.
   void hand_back() { is_handed_back_ = true; }
 
   void on_stage(std::string_view stage) override {

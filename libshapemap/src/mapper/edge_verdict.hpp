@@ -12,8 +12,8 @@
 
 namespace shapemap {
 
-/// Fills in what the match of a keyframe to the one before it, by edge number `edge`, says now that the map has it.
-/// Returns the candidate that was taken; nothing where the edge has none, or joins two sessions.
+/// Fills in `outcome`, the result of the second keyframe of edge number `edge`, by the candidate of that edge in the
+/// map. Returns the chosen candidate; nothing where the edge has none, or joins two sessions.
 std::optional<EdgeChosen> judge_edge(const KeyframeGraph& graph, const OptimizedMap& map, std::size_t edge,
                                      const ConfidenceOptions& options, ScanResult& outcome);
 

@@ -15,7 +15,7 @@ namespace {
 
 bool more_likely(const MatchCandidate& a, const MatchCandidate& b) { return a.score > b.score; }
 
-/// Where scans follow each other closely, candidates far from where the next was to be expected are less likely.
+/// Where scans follow each other closely, candidates far from the expected pose are less likely.
 void expect(const ExpectedPose& expected, const MatchCandidate& at_expected, std::vector<MatchCandidate>& candidates) {
   add_if_new(at_expected, candidates);
   for (MatchCandidate& candidate : candidates) candidate.score -= surprise(expected, candidate.ref_from_query);
@@ -49,7 +49,7 @@ std::vector<TrackedScan> FrontEnd::track(const std::vector<IncomingScan>& scans)
   return tracked;
 }
 
-/// parallel_for(); the seconds that `work` took, summed over the threads.
+/// Calls parallel_for(), and returns the seconds that `work` took, summed over the threads.
 double FrontEnd::timed_for(std::size_t count, const std::function<void(std::size_t)>& work) const {
   std::vector<double> seconds(count, 0.0);
   parallel_for(count, options_.run.threads, [&](std::size_t i) {
@@ -80,7 +80,7 @@ TrackedScan FrontEnd::viewed(const IncomingScan& incoming, std::size_t scan_inde
   return tracked;
 }
 
-/// None where the scan has one sweep only.
+/// Returns no views where the scan has one sweep only.
 std::vector<std::shared_ptr<const ScanView>> FrontEnd::views_of_sweeps(const Scan& scan) const {
   std::vector<std::shared_ptr<const ScanView>> views;
   if (scan.sweeps.size() == 1) return views;
@@ -110,7 +110,7 @@ void FrontEnd::track(TrackedScan& scan) {
   recent_.push_back({scan.scan_index, scan.session, scan.view, {}, {}});
 }
 
-/// Edges to the keyframes from number `first` of the recent ones on, each from the one before.
+/// Adds the edges to the keyframes from number `first` of the recent ones on, each from the keyframe before.
 void FrontEnd::add_edges(std::size_t first, std::vector<NewKeyframe*>& added) {
   match_s_ += timed_for(added.size(), [&](std::size_t i) {
     const std::size_t b = first + i;
@@ -123,7 +123,7 @@ void FrontEnd::add_edges(std::size_t first, std::vector<NewKeyframe*>& added) {
   });
 }
 
-/// Whether a recent keyframe is of the same session as the one before it.
+/// Returns whether a recent keyframe is of the same session as the one before it.
 bool FrontEnd::has_edge(std::size_t recent) const {
   return recent > 0 && recent_[recent].session == recent_[recent - 1].session;
 }
@@ -150,7 +150,8 @@ std::vector<MatchCandidate> FrontEnd::matched(std::size_t reference, std::size_t
   return find_candidates(*a.view, *b.view, options, {a.scan_index, b.scan_index, search}, cache_);
 }
 
-/// Where an edge is in doubt: what keyframes further back say about it, by way of the best poses in between.
+/// Matches the scan of a doubtful edge to keyframes further back, and composes these matches with the best poses of the
+/// edges in between.
 std::vector<MatchCandidate> FrontEnd::multi_reference_candidates(std::size_t recent) const {
   std::vector<MatchCandidate> found;
   const std::vector<MatchCandidate>& own = recent_[recent].candidates;

@@ -16,19 +16,19 @@
 
 namespace shapemap {
 
-/// A scan that comes in, and the recording that it is from. It is looked at during the call only.
+/// A scan, and the number of the recording that it is from. It is used during the call only.
 struct IncomingScan {
   const Scan& scan;
   std::size_t session = 0;
 };
 
-/// What a new keyframe brings to the graph.
+/// A new keyframe with its edge.
 struct NewKeyframe {
   Keyframe keyframe;
-  OdometryEdge edge;  ///< from the keyframe before; without candidates where there is none, or another session starts
+  OdometryEdge edge;  ///< edge from the keyframe before; it has no candidates at the start of a session
 };
 
-/// What the front end makes of a scan. A scan with too few points of shape is neither attached nor a keyframe.
+/// The result of the front end for a scan. A scan with too few points of shape is neither attached nor a keyframe.
 struct TrackedScan {
   std::size_t scan_index = 0;
   std::size_t session = 0;
@@ -39,30 +39,30 @@ struct TrackedScan {
   std::optional<NewKeyframe> keyframe;
 };
 
-/// Matches each scan to the keyframe before it, with several candidates and those that keyframes further back lend
-/// where these are in doubt. What it makes of a scan depends on this scan and on those before it, and on nothing that
-/// is found out about the map: so it can run ahead of the back end.
+/// Matches each scan to the keyframe before it, with several candidates, and with multi-reference candidates where
+/// these are in doubt. The result depends on this scan and the scans before it, and not on the map, so that the front
+/// end can run ahead of the back end.
 class FrontEnd {
  public:
   /// `cache` may be null. Keeps references to both.
   FrontEnd(const MappingOptions& options, MatchCache* cache);
 
-  /// One entry for each of `scans`, in their order. The result does not depend on how many come at a time; those that
-  /// come together are worked on in parallel. Scans are numbered from 0 in the order in which they come.
+  /// Returns one entry for each of `scans`, in their order. The scans of one call are worked on in parallel; the
+  /// grouping into calls does not change the result. Scans are numbered from 0 in the order of calls.
   std::vector<TrackedScan> track(const std::vector<IncomingScan>& scans);
 
   std::size_t num_scans() const { return num_scans_; }
-  double shape_s() const { return shape_s_; }  ///< spent on views so far, summed over threads
-  double match_s() const { return match_s_; }  ///< spent on matching so far, likewise
+  double shape_s() const { return shape_s_; }  ///< time spent on views so far, summed over threads
+  double match_s() const { return match_s_; }  ///< time spent on matching so far, summed over threads
 
  private:
-  /// A keyframe that those to come are matched to.
+  /// A keyframe that later ones are matched to.
   struct RecentKeyframe {
     std::size_t scan_index = 0;
     std::size_t session = 0;
     std::shared_ptr<const ScanView> view;
-    std::vector<MatchCandidate> candidates;  ///< of the edge from the keyframe before
-    std::optional<Pose2> best_own;           ///< the best pose in the frame of the keyframe before, by these two alone
+    std::vector<MatchCandidate> candidates;  ///< candidates of the edge from the keyframe before
+    std::optional<Pose2> best_own;           ///< best pose in the frame of the keyframe before, by these two alone
   };
 
   double timed_for(std::size_t count, const std::function<void(std::size_t)>& work) const;
@@ -82,7 +82,7 @@ class FrontEnd {
   ScanTracker tracker_;
   std::size_t num_scans_ = 0;
   std::size_t last_with_shape_ = 0;
-  std::vector<RecentKeyframe> recent_;  ///< the last few, and those that are being added
+  std::vector<RecentKeyframe> recent_;  ///< the last few keyframes, and those of the current call
   double shape_s_ = 0.0;
   double match_s_ = 0.0;
 };

@@ -18,7 +18,7 @@ Pose2 between(const OptimizedMap& map, std::size_t a, std::size_t b) {
   return inverse(map.map_from_keyframe[a]) * map.map_from_keyframe[b];
 }
 
-/// What becomes of a chain when keyframes are taken out of it.
+/// Computes the graph, the map and the loop candidates that are left when keyframes are culled.
 class KeyframeCulling {
  public:
   KeyframeCulling(const std::vector<std::optional<ReplacementKeyframe>>& redundant, const MappingOptions& options,
@@ -33,7 +33,7 @@ class KeyframeCulling {
   void run() {
     renew_loops();
     attach_scans();
-    renew_chain();
+    renew_graph();
     renew_map();
   }
 
@@ -43,7 +43,8 @@ class KeyframeCulling {
     return is_kept(keyframe) ? keyframe : redundant_[keyframe]->keyframe;
   }
 
-  /// Hypotheses of keyframes that are kept stay; what the map knows of others is said of those that stand for them.
+  /// Keeps the candidates between kept keyframes. The constraints of culled keyframes become candidates between their
+  /// replacements, at the poses of the map.
   void renew_loops() {
     std::vector<EdgeCandidate> candidates;
     std::set<std::pair<std::size_t, std::size_t>> pairs;
@@ -87,7 +88,7 @@ class KeyframeCulling {
     }
   }
 
-  void renew_chain() {
+  void renew_graph() {
     const RelativeCovariance covariance(map_.map_from_keyframe, map_.constraints);
     KeyframeGraph renewed;
     renewed.attached = std::move(graph_.attached);
@@ -97,7 +98,7 @@ class KeyframeCulling {
       const std::size_t before = kept_[k - 1];
       const bool are_neighbours = before + 1 == kept_[k];
       renewed.edges.push_back(are_neighbours ? std::move(graph_.edges[before])
-                                             : settled_link(before, kept_[k], covariance));
+                                             : culled_edge(before, kept_[k], covariance));
     }
     for (std::size_t i = 0; i + 1 < renewed.edges.size(); ++i) {
       OdometryEdge& edge = renewed.edges[i];
@@ -107,7 +108,8 @@ class KeyframeCulling {
     choose_candidates(graph_);
   }
 
-  OdometryEdge settled_link(std::size_t a, std::size_t b, const RelativeCovariance& covariance) const {
+  /// Returns the edge in place of those to culled keyframes between `a` and `b`.
+  OdometryEdge culled_edge(std::size_t a, std::size_t b, const RelativeCovariance& covariance) const {
     OdometryEdge edge;
     MatchCandidate pose;
     pose.ref_from_query = between(map_, a, b);
@@ -133,7 +135,8 @@ class KeyframeCulling {
     map_ = std::move(renewed);
   }
 
-  /// Of those that go, one for each pair of those that stand for them, and only where there is none.
+  /// Keeps the constraints between kept keyframes. Of those of culled keyframes, one is left for each pair of
+  /// replacements that has no constraint yet.
   std::vector<PoseConstraint> renewed_constraints() const {
     std::vector<PoseConstraint> constraints;
     std::set<std::pair<std::size_t, std::size_t>> pairs;
@@ -160,7 +163,7 @@ class KeyframeCulling {
   KeyframeGraph& graph_;
   LoopCandidates& known_;
   std::vector<std::size_t> kept_;    ///< the keyframes that stay
-  std::vector<std::size_t> number_;  ///< per keyframe: how many before it stay
+  std::vector<std::size_t> number_;  ///< for each keyframe, the number of kept ones before it
 };
 
 }  // namespace

@@ -10,8 +10,9 @@
 
 namespace shapemap {
 
-/// Takes the keyframes that others can stand for out of the chain. Their scans are attached to those, the links around
-/// them become what `map` says, and so do the loops in `known`. `map` loses them as well.
+/// Removes the keyframes with a replacement from `graph`, `map` and the loop candidates `known`. Their scans are
+/// attached to the replacements, and the edges and loop candidates that they had are replaced by the relative poses of
+/// `map`.
 void cull_keyframes(const std::vector<std::optional<ReplacementKeyframe>>& redundant, const MappingOptions& options,
                     OptimizedMap& map, KeyframeGraph& graph, LoopCandidates& known);
 

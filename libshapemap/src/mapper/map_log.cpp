@@ -15,7 +15,7 @@
 namespace shapemap {
 namespace {
 
-/// Scans that are worked on together, and between which the observer is asked; part of no result.
+/// Number of scans per call of the mapper, after which the observer is asked. It changes no result.
 constexpr std::size_t kBlock = 32;
 
 MapResult map_robustly(const Log& log, const MappingOptions& options, MappingEvents& events, MatchCache* cache) {

@@ -10,10 +10,10 @@
 
 namespace shapemap {
 
-/// The map of a solved graph, without a version. `num_scans` have come so far.
+/// Returns the map of an optimised graph, without a version. `num_scans` were pushed so far.
 Map map_snapshot(const KeyframeGraph& graph, const OptimizedMap& map, std::size_t num_scans);
 
-/// The map that a result is, without a version.
+/// Returns the map of a result, without a version.
 Map map_snapshot(const MapResult& result);
 
 }  // namespace shapemap

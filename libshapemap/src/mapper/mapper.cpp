@@ -14,10 +14,10 @@
 namespace shapemap {
 namespace {
 
-/// The maps that were published. Any thread may use it.
+/// Keeps the latest map and the versions of changes. All functions are safe to call from any thread.
 class Published {
  public:
-  /// Returns the map with its version.
+  /// Gives the map the next version, and returns it.
   std::shared_ptr<const Map> add(Map map) {
     const std::lock_guard<std::mutex> lock(mutex_);
     map.version = latest_ ? latest_->version + 1 : 1;
@@ -49,7 +49,7 @@ class Published {
  private:
   mutable std::mutex mutex_;
   std::shared_ptr<const Map> latest_;
-  std::vector<MapVersion> changed_;  ///< of each scan: the last version that has it elsewhere than the one before
+  std::vector<MapVersion> changed_;  ///< for each scan, the last version in which it has moved
 };
 
 void require_plausible(const Scan& scan, std::size_t number) {
@@ -117,7 +117,7 @@ class Mapper::Implementation {
   Published published_;
   bool is_finished_ = false;
   std::unique_ptr<BackEnd> back_end_;
-  std::unique_ptr<BackEndThread> thread_;  ///< ends before what it uses
+  std::unique_ptr<BackEndThread> thread_;  ///< the last member, because the thread uses the others until it ends
 };
 
 Mapper::Mapper(const MappingOptions& options, const LiveOptions& live, MappingEvents* events, MatchCache* cache) {

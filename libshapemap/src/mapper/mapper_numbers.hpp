@@ -46,7 +46,8 @@ struct ThreeScanWeights {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     const char* const reason =
-        "set by hand, never fitted: little overlap must say little either way; what counts of it is --three-scan-weight";
+        "set by hand, never fitted: little overlap must say little either way; what counts of it is "
+        "--three-scan-weight";
     visit(NumberField{"agree",
                       "weight of the logarithm of the share of points that agree with the scan before the "
                       "last",

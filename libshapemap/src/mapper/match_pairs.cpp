@@ -14,15 +14,16 @@
 namespace shapemap {
 namespace {
 
-/// Pairs that are worked on together, and between which the observer is asked. Part of no result.
+/// Number of pairs that are worked on in parallel, after which the observer is asked. It changes no result.
 constexpr std::size_t kBlock = 32;
 
-/// The views of a log's positions, from the first pair that needs one to the last.
+/// Keeps each view of a log's scans from the first pair that needs it to the last.
 class Views {
  public:
   explicit Views(const Log& log) : log_(log), views_(log.scans.size()), last_use_(log.scans.size(), 0) {}
 
-  /// `use` grows from call to call.
+  /// Notes that pair number `use` needs a view; the numbers must not fall from call to call. Throws ConfigError for an
+  /// index beyond the log.
   void note_use(std::size_t index, std::size_t use) {
     if (index >= log_.scans.size()) {
       throw ConfigError("there is no position " + std::to_string(index) + " in a log of " +
@@ -42,7 +43,7 @@ class Views {
     });
   }
 
-  /// Forgets a view that no pair from number `next_use` on needs.
+  /// Releases a view that no pair from number `next_use` on needs.
   void drop(std::size_t index, std::size_t next_use) {
     if (last_use_[index] < next_use) views_[index].reset();
   }

@@ -12,7 +12,7 @@
 namespace shapemap {
 bool TurnComparison::is_mirrored() const {
   const MirrorNumbers& numbers = kMapper.mirror;
-  // The number of opposite turns is binomial; by Chernoff's bound, so many or more have at most this probability.
+  // The number of opposite turns is binomial, and Chernoff's bound limits the probability of so many or more.
   const auto count = static_cast<double>(num_alike + num_opposite);
   if (count == 0.0) return false;
   const double share = static_cast<double>(num_opposite) / count;
@@ -25,7 +25,7 @@ bool TurnComparison::is_mirrored() const {
 TurnComparison compare_turns(const Log& log, const std::vector<PlacedScan>& placed) {
   const MirrorNumbers& numbers = kMapper.mirror;
   TurnComparison turns;
-  const PlacedScan* since = nullptr;  // turns are looked at as soon as they are large enough
+  const PlacedScan* since = nullptr;  // turns add up from here until they are large enough
   for (const PlacedScan& here : placed) {
     const std::optional<double>& after = log.scans[here.scan_index].recorded_heading_rad;
     if (!after) continue;

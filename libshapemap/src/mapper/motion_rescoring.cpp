@@ -38,7 +38,7 @@ std::vector<std::size_t> rescore_by_motion(const RobustOptions& options, int thr
     if (!edge.candidates.empty() && !graph.keyframes[i + 1].expected) rescored.push_back(i);
   }
   parallel_for(rescored.size(), threads, [&](std::size_t k) { rescore(prior, options, rescored[k], graph); });
-  std::set<std::size_t> pairs;  // the first edge of each two in a row of which one has changed
+  std::set<std::size_t> pairs;  // the first of each two successive edges of which one has changed
   for (const std::size_t i : rescored) {
     if (i > 0) pairs.insert(i - 1);
     if (i + 1 < graph.edges.size()) pairs.insert(i);

@@ -31,22 +31,22 @@ void OdometryTrail::match(const TrackedScan& scan, ScanUpdate& update) {
   update.role = scan.attached ? ScanRole::kAttached : ScanRole::kKeyframe;
   const MatchCandidate* best = scan.attached ? &*scan.attached : nullptr;
   double margin = kFullMargin;
-  double shortfall = 0.0;
+  double insufficient_view = 0.0;
   if (scan.keyframe) {
     const OdometryEdge& edge = scan.keyframe->edge;
     if (edge.candidates.empty()) return;
     best = &edge.candidates.front();
     margin = lead_of_first(edge.candidates);
-    shortfall = edge.insufficient_view;
+    insufficient_view = edge.insufficient_view;
   }
   const double by_two = match_probability(*best, margin);
   update.reference = last_keyframe_;
   update.reference_from_robot = best->ref_from_query;
   update.covariance = pose_covariance(best->fit);
-  update.probability = scan.attached ? by_two : odometry_probability(by_two, shortfall);
+  update.probability = scan.attached ? by_two : odometry_probability(by_two, insufficient_view);
 }
 
-/// By way of the last keyframe that the map has and that matches join to the scan.
+/// Composes the pose of the last keyframe of the map with the matches since, where these join the scan to it.
 ScanPose OdometryTrail::in_map(const Step& step, const Map* map) const {
   if (!step.has_pose) return {};
   if (!map || map->keyframes.empty()) {

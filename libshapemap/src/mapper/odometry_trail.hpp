@@ -10,8 +10,8 @@
 
 namespace shapemap {
 
-/// Where scans are by the matches from each keyframe to the next alone, and from there in the latest map: what is known
-/// of a scan before the map has it.
+/// Places scans by the matches from each keyframe to the next alone, and thereby in the latest map, before the map has
+/// them.
 class OdometryTrail {
  public:
   explicit OdometryTrail(const ConfidenceOptions& options) : options_(options) {}
@@ -20,9 +20,9 @@ class OdometryTrail {
   ScanUpdate add(const TrackedScan& scan, const Map* map);
 
  private:
-  /// A scan in the frame of the first keyframe that matches join it to.
+  /// The pose of a scan in its stretch, which is what matches join to one first keyframe.
   struct Step {
-    std::size_t stretch = 0;  ///< number of that keyframe among such
+    std::size_t stretch = 0;  ///< number of the stretch
     Pose2 stretch_from_robot;
     bool has_pose = false;
   };
@@ -31,7 +31,7 @@ class OdometryTrail {
   ScanPose in_map(const Step& step, const Map* map) const;
 
   const ConfidenceOptions& options_;
-  std::vector<Step> steps_;  ///< of each scan
+  std::vector<Step> steps_;  ///< one for each scan
   std::size_t last_keyframe_ = kNoReference;
   std::size_t num_stretches_ = 0;
 };

@@ -8,7 +8,7 @@
 namespace shapemap {
 namespace {
 
-/// Returns false when the observer asked to stop; what the mapper has placed until then is whole.
+/// Returns false when the observer asked to stop; the mapper then has a map of the scans until then.
 bool push_scans(const Log& log, RunObserver& observer, PaperMapper& mapper) {
   try {
     for (const Scan& scan : log.scans) {

@@ -9,7 +9,7 @@
 namespace shapemap {
 
 /// Pushes all scans of a log into a PaperMapper, and fills in the scans, components and times of `result`. Throws
-/// Interrupted when the events ask to stop; what is in `result` then is whole.
+/// Interrupted when the events ask to stop; `result` then is the map of the scans until then.
 void map_by_paper(const Log& log, const MappingOptions& options, MappingEvents& events, MapResult& result);
 
 }  // namespace shapemap

@@ -37,14 +37,14 @@ std::optional<MatchCandidate> ScanTracker::follow(const ScanView& view) {
   return pose;
 }
 
-/// After a jump, as where scans were lost, the motion may be any.
+/// Learns from a step of the sensor. After a jump, as where scans were lost, any motion is possible.
 void ScanTracker::go_on_by(const Pose2& step) {
   if (!is_within(step, kMapper.tracking.longest_step)) return forget_motion();
   if (step_ && !is_within(step, kMapper.tracking.stands)) expectation_.learn(inverse(*step_) * step);
   step_ = step;
 }
 
-/// From where the last scan was, and from where the motion goes on.
+/// Refines the pose of the last scan, and the pose at which the motion goes on, and returns the better.
 std::optional<MatchCandidate> ScanTracker::followed(const ScanView& view) const {
   MatchCandidate best = refined_candidate(*keyframe_, view, last_, options_.matcher.search);
   if (step_) {

@@ -10,22 +10,23 @@
 
 namespace shapemap {
 
-/// Follows a sensor that moves little from scan to scan, as in recordings at full rate, and says which of the scans a
-/// keyframe can stand for. Any doubt makes a keyframe: those are aligned without a guess.
+/// Tracks a sensor that moves little from scan to scan, as in recordings at full rate, and finds the scans that a
+/// keyframe can replace. A scan in any doubt becomes a keyframe, because keyframes are matched without an initial
+/// guess.
 class ScanTracker {
  public:
   explicit ScanTracker(const RobustOptions& options) : options_(options) {}
 
-  /// From here on, scans are compared to `keyframe`; with none, another log starts.
+  /// Compares the following scans to `keyframe`; null starts another session.
   void start(std::shared_ptr<const ScanView> keyframe);
 
-  /// After scans that tell nothing: the motion may have been any.
+  /// Must be called after scans without shape, during which any motion is possible.
   void forget_motion() { step_.reset(); }
 
-  /// The pose of a scan that the keyframe can stand for, in its frame.
+  /// Returns the pose of the scan in the frame of the keyframe; nothing when the keyframe cannot replace it.
   std::optional<MatchCandidate> follow(const ScanView& view);
 
-  /// Where the scan last asked about was to be expected, in the frame of the keyframe then: only where scans follow
+  /// Returns the pose that was expected of the last scan, in the frame of its keyframe; nothing unless scans follow
   /// each other closely.
   const std::optional<ExpectedPose>& expected() const { return expected_; }
 
@@ -36,11 +37,11 @@ class ScanTracker {
 
   const RobustOptions& options_;
   std::shared_ptr<const ScanView> keyframe_;
-  Pose2 last_;                 ///< of the scan before, in the frame of the keyframe
-  std::optional<Pose2> step_;  ///< to it from the one before, where that is known
+  Pose2 last_;                 ///< pose of the scan before, in the frame of the keyframe
+  std::optional<Pose2> step_;  ///< last motion from one scan to the next, where it is known
   ConstantVelocityPrior expectation_;
   std::optional<ExpectedPose> expected_;
-  double attached_ = 0.0;  ///< share of the recent scans that a keyframe stood for
+  double attached_ = 0.0;  ///< share of the recent scans that were attached to a keyframe
 };
 
 }  // namespace shapemap

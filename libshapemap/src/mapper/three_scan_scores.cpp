@@ -11,7 +11,7 @@
 namespace shapemap {
 namespace {
 
-/// How well a pose goes with a scan that it was not made from. Little overlap says little either way.
+/// Returns the score of a pose by two scans that it was not found from. Little overlap is little evidence either way.
 double three_scan_score(const Visibility& v) {
   const double total = std::max(v.total(), 1e-9);
   const ThreeScanWeights& weights = kMapper.three_scans;
@@ -28,7 +28,7 @@ std::vector<std::vector<double>> three_scan_scores(const KeyframeGraph& graph, s
     for (std::size_t j = 0; j < b_to_c.candidates.size(); ++j) {
       const Pose2 a_from_c = a_to_b.candidates[i].ref_from_query * b_to_c.candidates[j].ref_from_query;
       const Visibility seen = visibility(*graph.keyframes[first].view, *graph.keyframes[first + 2].view, a_from_c,
-                                         options.matcher.search.visibility, kInference.agreement.odometry_slack);
+                                         options.matcher.search.visibility, {kInference.agreement.odometry_slack, 1});
       scores[i][j] = options.front_end.three_scan_weight * three_scan_score(seen);
     }
   }

@@ -9,13 +9,13 @@
 
 namespace shapemap {
 
-/// Sets OdometryEdge::transition_scores of edges `first`, each an index of an edge that another follows: how well the
-/// first and the last of their three scans go together, for each candidate of the one edge and each of the next, as a
-/// weighted logarithm of odds.
+/// Sets OdometryEdge::transition_scores of the edges `first`, each of which another edge must follow. The score of a
+/// candidate of the one edge and a candidate of the next is a weighted log odds that the first and the last of the
+/// three scans are consistent.
 void set_three_scan_scores(const std::vector<std::size_t>& first, const RobustOptions& options, int threads,
                            KeyframeGraph& graph);
 
-/// The same for all edges that have no scores yet.
+/// Does the same for all edges that have no scores yet.
 void add_three_scan_scores(const RobustOptions& options, int threads, KeyframeGraph& graph);
 
 }  // namespace shapemap

@@ -11,7 +11,7 @@
 namespace shapemap {
 namespace {
 
-/// The covariance of a match, turned into the frame of the map.
+/// Returns the covariance of a match, turned into the frame of the map.
 Eigen::Matrix3d covariance_in_map(const ScanMatch& match, const Pose2& map_from_robot) {
   Eigen::Matrix3d map_from_reference = Eigen::Matrix3d::Identity();
   const double heading_rad = map_from_robot.theta_rad - match.ref_from_query.theta_rad;
@@ -65,7 +65,7 @@ class TrajectoryBuilder {
     add(outcome, map_.map_from_keyframe[scan.keyframe] * scan.pose.ref_from_query);
   }
 
-  /// Components are numbered in the order in which scans come.
+  /// Returns the number of a keyframe's component; components are numbered in the order of scans.
   int component_of(std::size_t keyframe) {
     const auto [found, is_new] =
         number_of_component_.try_emplace(map_.component[keyframe], static_cast<int>(result_.components.size()));
@@ -73,7 +73,7 @@ class TrajectoryBuilder {
     return found->second;
   }
 
-  /// Scans that are attached to keyframes are placed one by one: their motion is smoothed.
+  /// Smooths the trajectory, because scans that are attached to keyframes are placed one by one.
   void smooth(Component& component) const {
     std::vector<TrackedPose> poses;
     for (const PlacedScan& placed : component.scans) {

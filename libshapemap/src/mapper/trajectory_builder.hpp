@@ -13,15 +13,15 @@
 
 namespace shapemap {
 
-/// A graph and the map that it was solved for.
+/// A graph and its optimised map.
 struct SolvedGraph {
   const KeyframeGraph& graph;
   const OptimizedMap& map;
   const SweepCorrections& sweeps;
 };
 
-/// Places all scans in `result`, which has an entry for each, by the poses of their keyframes: fills in the components,
-/// and what became of each scan. `num_sweeps` has an entry for each scan.
+/// Places all scans by the poses of their keyframes: it fills in the components of `result`, and the result of each
+/// scan, for which there is an entry. `num_sweeps` has an entry for each scan.
 void build_trajectory(const SolvedGraph& solved, const std::vector<std::size_t>& num_sweeps,
                       const ConfidenceOptions& options, MappingEvents& events, MapResult& result);
 

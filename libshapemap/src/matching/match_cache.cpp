@@ -6,12 +6,12 @@
 namespace shapemap {
 
 std::vector<MatchCandidate> find_candidates(const ScanView& reference, const ScanView& query,
-                                            const MatchSearchOptions& options, const MatchKey& key, MatchCache* store) {
-  if (store) {
-    if (std::optional<std::vector<MatchCandidate>> known = store->find(key)) return std::move(*known);
+                                            const MatchSearchOptions& options, const MatchKey& key, MatchCache* cache) {
+  if (cache) {
+    if (std::optional<std::vector<MatchCandidate>> known = cache->find(key)) return std::move(*known);
   }
   std::vector<MatchCandidate> found = find_candidates(reference, query, options);
-  if (store) store->keep(key, found);
+  if (cache) cache->keep(key, found);
   return found;
 }
 

@@ -9,8 +9,8 @@
 namespace shapemap {
 namespace {
 
-/// In the directions in which it is held best and worst.
-Eigen::Vector2d variances_of_place(const Eigen::Matrix3d& covariance) {
+/// Returns the variances of (x, y) along the principal axes, the smaller first.
+Eigen::Vector2d position_variances(const Eigen::Matrix3d& covariance) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(Eigen::Matrix2d(covariance.topLeftCorner<2, 2>()))
       .eigenvalues();
 }
@@ -32,12 +32,12 @@ double match_probability(const MatchCandidate& best, double margin) {
   const double log_odds = weights.constant + weights.per_margin * lead + weights.per_log_margin * std::log(lead) +
                           weights.per_score * best.score +
                           weights.per_log_agree * std::log(weights.agree_offset + agree);
-  // However well the best place fits: of two that fit alike, each is right half of the time.
+  // The margin bounds the log odds, because of two places that fit alike, each is right half of the time.
   return probability_of(std::min(log_odds, lead));
 }
 
 double odometry_probability(double match_probability, double insufficient_view) {
-  const double least = 1e-9;  // the logarithm stays finite
+  const double least = 1e-9;  // keeps the logarithm finite
   const double match = log_odds_of(std::clamp(match_probability, least, 1.0 - least));
   const OdometryProbabilityWeights& weights = kMatching.odometry_probability;
   return probability_of(weights.constant + weights.per_log_odds * match +
@@ -49,7 +49,7 @@ double insufficient_view(const ScanView& a, const ScanView& b) {
 }
 
 Eigen::Matrix3d pose_covariance(const LineFit& fit, const LineNoise& noise) {
-  // Angles are scaled to the metres that they move a point by, so that all eigenvalues compare.
+  // Angles are scaled to the metres by which they move a point, so that all eigenvalues are comparable.
   const double lever_m = std::max(fit.lever_m, kMatching.covariance.least_lever_m);
   const Eigen::Vector3d scale(1.0, 1.0, 1.0 / lever_m);
   const Eigen::Matrix3d information = scale.asDiagonal() * fit.information * scale.asDiagonal();
@@ -64,11 +64,11 @@ Eigen::Matrix3d pose_covariance(const LineFit& fit, const LineNoise& noise) {
 }
 
 double worst_deviation_m(const Eigen::Matrix3d& covariance) {
-  return std::sqrt(std::max(0.0, variances_of_place(covariance).maxCoeff()));
+  return std::sqrt(std::max(0.0, position_variances(covariance).maxCoeff()));
 }
 
 double best_deviation_m(const Eigen::Matrix3d& covariance) {
-  return std::sqrt(std::max(0.0, variances_of_place(covariance).minCoeff()));
+  return std::sqrt(std::max(0.0, position_variances(covariance).minCoeff()));
 }
 
 }  // namespace shapemap

@@ -23,7 +23,7 @@ MatchCandidate judged_fit(const ScanView& reference, const ScanView& query, cons
   return pose;
 }
 
-/// The two scans of an alignment and what their hypotheses come from.
+/// Searches candidates for one pair of scans.
 class Search {
  public:
   Search(const ScanView& reference, const ScanView& query, const MatchSearchOptions& options, const MotionPrior& prior)
@@ -66,7 +66,7 @@ class Search {
     pose.ref_from_query = {shift_m.x(), shift_m.y(), rotation_rad};
     const CandidateNumbers& numbers = kMatching.candidates;
     pose.score = visibility_score(visibility(reference_, query_, pose.ref_from_query, options_.visibility,
-                                             numbers.coarse_slack, numbers.coarse_stride));
+                                             {numbers.coarse_slack, numbers.coarse_stride}));
     pose.score -= prior_.surprise(pose.ref_from_query);
     return pose;
   }
@@ -92,13 +92,13 @@ std::vector<double> all_rotations(double step_rad) {
 
 std::vector<MatchCandidate> find_candidates(const ScanView& reference, const ScanView& query,
                                             const MatchSearchOptions& options) {
-  const MotionPrior any;
-  const Search search(reference, query, options, any);
+  const MotionPrior flat;
+  const Search search(reference, query, options, flat);
   std::vector<MatchCandidate> found =
       search.among(rotation_hypotheses(reference.tangents, query.tangents, options.candidates.rotation_peaks),
                    options.voting.peaks, options.candidates.shape_segments);
   if (!found.empty() && found.front().score >= options.candidates.all_rotations_below) return found;
-  // Few lines, or little in common: tangents alone do not tell the rotation.
+  // Where the scans have few lines, or little in common, tangents alone do not determine the rotation.
   const int peaks = std::max(1, options.voting.peaks / kMatching.candidates.all_rotations_fewer_peaks);
   std::vector<MatchCandidate> more = search.among(all_rotations(options.candidates.all_rotations_step_rad), peaks, 0);
   more.insert(more.end(), found.begin(), found.end());

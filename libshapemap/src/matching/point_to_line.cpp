@@ -11,7 +11,7 @@
 namespace shapemap {
 namespace {
 
-/// Normal equations of one iteration.
+/// The normal equations of one iteration.
 struct LineSystem {
   Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -20,13 +20,19 @@ struct LineSystem {
   int partners = 0;
 };
 
-/// The nearest of points along a scan, for points along another. What was found last is near the nearest, so that the
-/// search knows from the start how far it needs to look.
+/// The largest distance of a point from its partner, and the least cosine between their tangents.
+struct PartnerGate {
+  double distance_m;
+  double cos_tangent;
+};
+
+/// Finds the nearest reference point of each query point. The partner of the last iteration bounds the distance of the
+/// nearest point, so that each search is short.
 class Partners {
  public:
   Partners(const ScanView& reference, std::size_t num_points) : reference_(reference), last_(num_points, kNone) {}
 
-  /// Of point `i`, now at `p_m`.
+  /// Returns the nearest reference point of query point `i`, which is now at `p_m`.
   PointIndex::Neighbour nearest(std::size_t i, const Point2& p_m, double gate_m) {
     constexpr double kRounding = 1e-9;
     double within_m = gate_m;
@@ -44,21 +50,21 @@ class Partners {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
   const ScanView& reference_;
-  std::vector<std::size_t> last_;  ///< per point: the one found last; for the first time, that of the point before
+  std::vector<std::size_t> last_;  ///< the last partner of each query point
 };
 
 LineSystem line_system(Partners& partners, const ScanView& reference, const ScanView& query,
-                       const Pose2& ref_from_query, double gate_m, double cos_gate) {
+                       const Pose2& ref_from_query, const PartnerGate& gate) {
   LineSystem system;
   const Turn turn(ref_from_query.theta_rad);
-  const double trusted_m = kMatching.line_fit.trusted_share_of_gate * gate_m;
+  const double trusted_m = kMatching.line_fit.trusted_share_of_gate * gate.distance_m;
   for (std::size_t i = 0; i < query.size(); ++i) {
     const Point2 turned_m = turn * query.points[i].p_m;
     const Point2 p_m = turned_m + ref_from_query.translation();
-    const PointIndex::Neighbour near = partners.nearest(i, p_m, gate_m);
-    if (!(near.distance_m <= gate_m)) continue;
+    const PointIndex::Neighbour near = partners.nearest(i, p_m, gate.distance_m);
+    if (!(near.distance_m <= gate.distance_m)) continue;
     const Point2& tangent = reference.directions[near.point];
-    if ((turn * query.directions[i]).dot(tangent) < cos_gate) continue;
+    if ((turn * query.directions[i]).dot(tangent) < gate.cos_tangent) continue;
     const Point2 normal(-tangent.y(), tangent.x());
     const double residual_m = normal.dot(p_m - reference.points[near.point].p_m);
     const double ratio = residual_m / trusted_m;
@@ -90,10 +96,9 @@ LineFit fit_to_lines(const ScanView& reference, const ScanView& query, const Pos
   LineFit fit;
   fit.ref_from_query = start;
   Partners partners(reference, query.size());
-  const double cos_gate = std::cos(options.tangent_gate_rad);
-  double gate_m = std::max(options.first_gate_m, options.last_gate_m);
+  PartnerGate gate{std::max(options.first_gate_m, options.last_gate_m), std::cos(options.tangent_gate_rad)};
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    const LineSystem system = line_system(partners, reference, query, fit.ref_from_query, gate_m, cos_gate);
+    const LineSystem system = line_system(partners, reference, query, fit.ref_from_query, gate);
     note_fit(system, fit);
     if (fit.partners < numbers.least_partners) break;
 
@@ -103,9 +108,9 @@ LineFit fit_to_lines(const ScanView& reference, const ScanView& query, const Pos
     fit.ref_from_query.y_m += step.y();
     fit.ref_from_query.theta_rad = wrap_angle(fit.ref_from_query.theta_rad + step.z());
     const bool still = is_within({step.x(), step.y(), step.z()}, numbers.still);
-    if (still && gate_m <= options.last_gate_m) break;
+    if (still && gate.distance_m <= options.last_gate_m) break;
     const double shrinks = still ? numbers.gate_shrinks_when_still : numbers.gate_shrinks;
-    gate_m = std::max(options.last_gate_m, shrinks * gate_m);
+    gate.distance_m = std::max(options.last_gate_m, shrinks * gate.distance_m);
   }
   return fit;
 }
@@ -115,8 +120,8 @@ LineFit fit_at(const ScanView& reference, const ScanView& query, const Pose2& re
   LineFit fit;
   fit.ref_from_query = ref_from_query;
   Partners partners(reference, query.size());
-  const double cos_gate = std::cos(options.tangent_gate_rad);
-  note_fit(line_system(partners, reference, query, ref_from_query, options.last_gate_m, cos_gate), fit);
+  const PartnerGate gate{options.last_gate_m, std::cos(options.tangent_gate_rad)};
+  note_fit(line_system(partners, reference, query, ref_from_query, gate), fit);
   return fit;
 }
 

@@ -68,7 +68,7 @@ ScanMatch judged(const std::vector<MatchCandidate>& candidates, std::size_t chos
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (i != chosen) match.ranked.push_back(ranked_pose(candidates[i]));
   }
-  // Those that scans further back have lent stand behind the others.
+  // Multi-reference candidates come behind the others, in no order.
   std::stable_sort(match.ranked.begin() + 1, match.ranked.end(),
                    [](const RankedPose& a, const RankedPose& b) { return a.score > b.score; });
   give_verdict(match, match.ranked.front().agree, options);

@@ -35,7 +35,7 @@ TranslationVoting::TranslationVoting(const ScanView& reference, double max_shift
 std::vector<Point2> TranslationVoting::peaks(const ScanView& query, double rotation_rad, int max_count) const {
   const Votes votes = blurred(cast(query, rotation_rad));
   const auto count = static_cast<std::size_t>(max_count);
-  // More cells than places are wanted: those beside a better one are passed over.
+  // Cells beside a better one are passed over, so more cells than peaks are needed.
   std::vector<std::size_t> cells;
   for (std::size_t row = 1; row + 1 < width_; ++row) {
     for (std::size_t cell = row * width_ + 1; cell + 1 < (row + 1) * width_; ++cell) {
@@ -95,7 +95,7 @@ void TranslationVoting::cast_from(const Point2& turned_m, double weight, double 
   }
 }
 
-/// Votes near the edge of a cell count for the cells beside it, too.
+/// Spreads votes over the cells beside theirs, since a peak may lie near the edge of a cell.
 TranslationVoting::Votes TranslationVoting::blurred(const Votes& votes) const {
   Votes rows(votes.size(), 0.0F);
   for (std::size_t i = 1; i + 1 < votes.size(); ++i) rows[i] = votes[i - 1] + 2.0F * votes[i] + votes[i + 1];

@@ -11,7 +11,7 @@
 namespace shapemap {
 namespace {
 
-enum class Seen { kOutside, kHidden, kUnclear, kCrossed, kAgree };  // the later, the stronger the evidence
+enum class Seen { kOutside, kHidden, kUnclear, kCrossed, kAgree };  // ordered by strength of the evidence
 
 struct Limits {
   double agree_m;
@@ -19,14 +19,14 @@ struct Limits {
   double cos_tangent;
 };
 
-/// A point of the other scan, in the robot's frame of the scan that looks at it.
+/// A point of the other scan, in the robot's frame of the scan that sees it.
 struct SeenPoint {
   Point2 p_m;
   Point2 direction;
 };
 
-/// Some points, and one image that looks at them. What needs no beam is done for all of them at once.
-class Looks {
+/// Points that one range image sees. What needs no beam is computed for all of them at once, which is vectorised.
+class PointBatch {
  public:
   static constexpr std::size_t kMost = 64;
 
@@ -61,7 +61,7 @@ class Looks {
   std::array<double, kMost> bearing_rad_;
 };
 
-Seen look_along_beam(const RangeImage::Beam& beam, const SeenPoint& point, double range_m, const Limits& limits) {
+Seen seen_along_beam(const RangeImage::Beam& beam, const SeenPoint& point, double range_m, const Limits& limits) {
   if (beam.range_m <= 0.0) return Seen::kUnclear;
   const Point2 off_m = point.p_m - beam.hit_m;
   const double before_m = off_m.dot(beam.normal);
@@ -74,15 +74,15 @@ Seen look_along_beam(const RangeImage::Beam& beam, const SeenPoint& point, doubl
   return range_m - beam.range_m > limits.see_through_m ? Seen::kHidden : Seen::kUnclear;
 }
 
-/// By the beam towards the point and its neighbours: one of them suffices to agree, all are needed to cross. Edges of
-/// things are never certain to a beam.
-Seen look(const RangeImage& image, int middle, const SeenPoint& point, double range_m, const Limits& limits) {
+/// Uses the beam towards the point and the beams beside it, because the edge of an object is never certain to a beam:
+/// one of them suffices to agree, and all must cross.
+Seen seen_by(const RangeImage& image, int middle, const SeenPoint& point, double range_m, const Limits& limits) {
   if (middle < 0) return Seen::kOutside;
   const int last = static_cast<int>(image.beams.size()) - 1;
   Seen weakest = Seen::kAgree;
   for (const int k : {middle, middle - 1, middle + 1}) {
     if (k < 0 || k > last) continue;
-    const Seen seen = look_along_beam(image.beams[static_cast<std::size_t>(k)], point, range_m, limits);
+    const Seen seen = seen_along_beam(image.beams[static_cast<std::size_t>(k)], point, range_m, limits);
     if (seen == Seen::kAgree) return seen;
     weakest = std::min(weakest, seen);
   }
@@ -105,25 +105,25 @@ double& share(Visibility& sum, Seen seen) {
   return sum.outside;
 }
 
-/// The points of `seen` from the sensors of `seer`.
+/// Compares the points of `seen` with what the sensors of `seer` saw.
 Visibility one_way(const ScanView& seer, const ScanView& seen, const Pose2& seer_from_seen, const Limits& limits,
                    std::size_t stride) {
   Visibility sum;
   const Turn turn(seer_from_seen.theta_rad);
-  for (std::size_t first = stride / 2; first < seen.size(); first += Looks::kMost * stride) {
-    Looks looks;
-    for (std::size_t i = first; i < seen.size() && looks.size() < Looks::kMost; i += stride) {
-      looks.add(turn * seen.points[i].p_m + seer_from_seen.translation(), turn * seen.directions[i]);
+  for (std::size_t first = stride / 2; first < seen.size(); first += PointBatch::kMost * stride) {
+    PointBatch batch;
+    for (std::size_t i = first; i < seen.size() && batch.size() < PointBatch::kMost; i += stride) {
+      batch.add(turn * seen.points[i].p_m + seer_from_seen.translation(), turn * seen.directions[i]);
     }
-    std::array<Seen, Looks::kMost> best;
+    std::array<Seen, PointBatch::kMost> best;
     best.fill(Seen::kOutside);
     for (const RangeImage& image : seer.images) {
-      looks.turn_to(image);
-      for (std::size_t k = 0; k < looks.size(); ++k) {
-        best[k] = std::max(best[k], look(image, looks.beam(image, k), looks.point(k), looks.range_m(k), limits));
+      batch.turn_to(image);
+      for (std::size_t k = 0; k < batch.size(); ++k) {
+        best[k] = std::max(best[k], seen_by(image, batch.beam(image, k), batch.point(k), batch.range_m(k), limits));
       }
     }
-    for (std::size_t k = 0; k < looks.size(); ++k) {
+    for (std::size_t k = 0; k < batch.size(); ++k) {
       const std::size_t i = first + k * stride;
       share(sum, best[k]) += seen.weights[i];
       sum.cross_total += seen.cross_weights[i];
@@ -147,15 +147,16 @@ Visibility& Visibility::operator+=(const Visibility& other) {
 }
 
 Visibility visibility(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
-                      const VisibilityOptions& options, double slack, std::size_t stride) {
-  const Limits limits{options.agree_m * slack, options.see_through_m * slack, std::cos(options.agree_tangent_rad)};
-  Visibility sum = one_way(reference, query, ref_from_query, limits, stride);
-  sum += one_way(query, reference, inverse(ref_from_query), limits, stride);
+                      const VisibilityOptions& options, const VisibilityPrecision& precision) {
+  const Limits limits{options.agree_m * precision.slack, options.see_through_m * precision.slack,
+                      std::cos(options.agree_tangent_rad)};
+  Visibility sum = one_way(reference, query, ref_from_query, limits, precision.stride);
+  sum += one_way(query, reference, inverse(ref_from_query), limits, precision.stride);
   return sum;
 }
 
 double visibility_score(const Visibility& v) {
-  const double nothing = 1e-9;  // there is something to divide by
+  const double nothing = 1e-9;  // avoids a division by zero
   const ScoreWeights& weights = kMatching.score;
   const double agree = (v.agree + weights.unclear_share * v.unclear) / (v.total() + nothing);
   const double cross_agree = v.cross_agree / (v.cross_total + nothing);

@@ -6,7 +6,7 @@
 namespace shapemap {
 namespace {
 
-/// A stretch of three keyframes, laid at `place`.
+/// Returns a stretch of three keyframes at `place`.
 PlacedStretch laid_at(const Pose2& place, double log_odds) {
   return {log_odds, {place, place * Pose2{1.0, 0.0, 0.0}, place * Pose2{2.0, 0.0, 0.0}}, {}};
 }
@@ -21,7 +21,7 @@ TEST(PlaceHypotheses, IsNotSureOfNothing) {
   EXPECT_FALSE(few.is_sure());
 }
 
-TEST(PlaceHypotheses, IsSureOfAPlaceWithoutRival) {
+TEST(PlaceHypotheses, IsSureOfTheOnlyPlace) {
   PlaceHypotheses places;
   EXPECT_TRUE(places.add(laid_at(kElsewhere, 4.0)));
   EXPECT_TRUE(places.add(laid_at(kHere, 8.0)));
@@ -44,7 +44,7 @@ TEST(PlaceHypotheses, TakesThoseNearEachOtherForOne) {
   places.add(laid_at(kHere, 20.0));
   places.add(laid_at(kHere * Pose2{0.2, -0.3, 0.05}, 19.5));
   EXPECT_TRUE(places.is_sure());
-  places.add(laid_at(kHere * Pose2{0.0, 0.0, 0.6}, 19.5));  // ends elsewhere
+  places.add(laid_at(kHere * Pose2{0.0, 0.0, 0.6}, 19.5));  // the stretch ends elsewhere
   EXPECT_FALSE(places.is_sure());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Of a robot that goes round a ring once more: it knows the places of the first lap again.
+// A robot goes round a ring twice, and is localized in the map of the first lap.
 #include "localization/revisit_tracking.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ using test::Laps;
 
 constexpr std::size_t kSettled = test::kRingLap + 6;
 
-/// The robot goes ahead without swaying, so that most places are known again.
+/// The robot does not sway, so that most places are recognised.
 Laps steady_laps(std::size_t count) {
   std::vector<Pose2> poses;
   std::mt19937 rng(5);
@@ -40,7 +40,7 @@ const MappingOptions& quick() {
   return options;
 }
 
-/// What is followed after `num_settled` keyframes, whose part of the map is right.
+/// Follows the keyframes after the first `num_settled`, whose poses in the map are right.
 RevisitTracker::Followed followed(const Laps& laps, const KnownGraph& known,
                                   const std::vector<EdgeCandidate>& loops = {}, std::size_t num_settled = kSettled) {
   const MappingOptions options = quick();
@@ -57,12 +57,12 @@ std::size_t num_known(const RevisitTracker::Followed& followed, std::size_t firs
                                                 followed.redundant.end(), [](const auto& s) { return s.has_value(); }));
 }
 
-/// The last few keyframes are left for later, and those before them may still be on a wrong way.
+/// The last few keyframes are never followed, and the localization of those just before them is not certain yet.
 std::size_t end_of_followed(const Laps& laps) {
   return laps.truth.size() - kLocalization.redundancy.keyframes_in_use - 12;
 }
 
-/// The poses of a robot whose each step is off by so much.
+/// Returns the poses with an error added to each step.
 std::vector<Pose2> drifting(const std::vector<Pose2>& truth, const Pose2& error) {
   std::vector<Pose2> poses{truth.front()};
   for (std::size_t i = 1; i < truth.size(); ++i) {
@@ -71,7 +71,7 @@ std::vector<Pose2> drifting(const std::vector<Pose2>& truth, const Pose2& error)
   return poses;
 }
 
-/// The link to keyframe `b` is off by `error`.
+/// Returns a graph whose edge to keyframe `b` is off by `error`.
 KnownGraph wrong_at(const Laps& laps, std::size_t b, const Pose2& error) {
   std::vector<Pose2> poses = laps.truth;
   for (std::size_t i = b; i < poses.size(); ++i) {
@@ -80,10 +80,10 @@ KnownGraph wrong_at(const Laps& laps, std::size_t b, const Pose2& error) {
   return {laps, poses};
 }
 
-/// And in doubt.
+/// Returns the same graph with this edge in doubt.
 KnownGraph doubtful_at(const Laps& laps, std::size_t b, const Pose2& error) {
   KnownGraph known = wrong_at(laps, b, error);
-  known.graph.edges[b - 1].choice.margin = 0.01;  // another place fits as well
+  known.graph.edges[b - 1].choice.margin = 0.01;  // makes the edge doubtful
   return known;
 }
 
@@ -104,19 +104,19 @@ TEST(RevisitTracker, KnowThePlacesOfTheLapBefore) {
   }
 }
 
-TEST(RevisitTracker, TakeTheErrorsOfTheChainAway) {
+TEST(RevisitTracker, TakeTheErrorsOfOdometryAway) {
   const Laps& laps = two_laps();
   const Pose2 error{0.02, 0.01, 0.3 * kDegree};
   const std::vector<Pose2> drifted = drifting(laps.truth, error);
   const RevisitTracker::Followed result = followed(laps, KnownGraph(laps, drifted));
   const std::size_t last = result.num_followed - 1;
-  const Pose2 chained = laps.truth[kSettled - 1] * inverse(drifted[kSettled - 1]) * drifted[last];
-  EXPECT_GT((chained.translation() - laps.truth[last].translation()).norm(), 0.35);
+  const Pose2 by_odometry = laps.truth[kSettled - 1] * inverse(drifted[kSettled - 1]) * drifted[last];
+  EXPECT_GT((by_odometry.translation() - laps.truth[last].translation()).norm(), 0.35);
   EXPECT_LT((result.map.map_from_keyframe[last].translation() - laps.truth[last].translation()).norm(), 0.2);
   EXPECT_GT(num_known(result), 6U);
 }
 
-TEST(RevisitTracker, BelieveADoubtfulLinkWhenWhatComesAfterIsWhereItWasExpected) {
+TEST(RevisitTracker, BelieveADoubtfulEdgeWhenWhatComesAfterIsWhereItWasExpected) {
   const Laps& laps = two_laps();
   constexpr std::size_t kDoubtful = kSettled + 4;
   const KnownGraph known = doubtful_at(laps, kDoubtful, {});
@@ -127,8 +127,8 @@ TEST(RevisitTracker, BelieveADoubtfulLinkWhenWhatComesAfterIsWhereItWasExpected)
   EXPECT_EQ(result.map.component[result.num_followed - 1], 0U);
 }
 
-/// The chain took the wrong one of two alternatives.
-TEST(RevisitTracker, TakeTheAlternativeAfterWhichPlacesAreKnownAgain) {
+/// The graph chose the wrong one of two candidates.
+TEST(RevisitTracker, TakeTheCandidateAfterWhichPlacesAreKnownAgain) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
   KnownGraph known = doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
@@ -149,7 +149,7 @@ TEST(RevisitTracker, TakeTheAlternativeAfterWhichPlacesAreKnownAgain) {
   }
 }
 
-TEST(RevisitTracker, TakeEitherOfTwoAlternativesThatAreOnePlace) {
+TEST(RevisitTracker, TakeEitherOfTwoCandidatesThatAreOnePlace) {
   const Laps& laps = two_laps();
   constexpr std::size_t kDoubtful = kSettled + 4;
   KnownGraph known = doubtful_at(laps, kDoubtful, {0.7, 0.0, 5 * kDegree});
@@ -164,7 +164,7 @@ TEST(RevisitTracker, TakeEitherOfTwoAlternativesThatAreOnePlace) {
   EXPECT_GT(num_known(result, kDoubtful), 10U);
 }
 
-TEST(RevisitTracker, KnowNothingAgainAfterAWrongLink) {
+TEST(RevisitTracker, KnowNothingAgainAfterAWrongEdge) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
   const RevisitTracker::Followed result = followed(laps, doubtful_at(laps, kWrong, {0.7, 0.0, 5 * kDegree}));
@@ -174,7 +174,7 @@ TEST(RevisitTracker, KnowNothingAgainAfterAWrongLink) {
   for (std::size_t b = kWrong; b < end_of_followed(laps); ++b) EXPECT_NE(result.map.component[b], 0U) << b;
 }
 
-/// A hypothesis that keyframe `b` is where it was a lap ago.
+/// Returns a candidate that joins keyframe `b` to the keyframe a lap ago.
 EdgeCandidate loop_to(const Laps& laps, std::size_t b) {
   const std::size_t a = b - test::kRingLap;
   return {a, b, inverse(laps.truth[a]) * laps.truth[b], Eigen::Matrix3d::Identity() * 1e-4, 2.0};
@@ -189,12 +189,12 @@ TEST(RevisitTracker, FindTheWayAgainWhereALoopPutsIt) {
   wrong.score = 3.0;
   const RevisitTracker::Followed result = followed(laps, known, {wrong, loop_to(laps, kWrong + 9)});
   EXPECT_EQ(result.num_followed, laps.truth.size() - kLocalization.redundancy.keyframes_in_use);
-  EXPECT_GE(num_known(result) + 2, num_known(followed(laps, KnownGraph(laps))));  // the two at the link stay
+  EXPECT_GE(num_known(result) + 2, num_known(followed(laps, KnownGraph(laps))));  // the two at the edge must stay
   for (std::size_t b = 0; b < result.num_followed; ++b) {
     EXPECT_EQ(result.map.component[b], 0U) << b;
     EXPECT_THAT(result.map.map_from_keyframe[b], test::IsNearPose(laps.truth[b], 0.10, 2 * kDegree)) << b;
   }
-  EXPECT_EQ(result.map.edge_choice[kWrong - 1], kCut);  // none of its hypotheses is where the robot went
+  EXPECT_EQ(result.map.edge_choice[kWrong - 1], kCut);  // no candidate is right
 }
 
 TEST(RevisitTracker, FindNoWayWhereALoopIsWrong) {
@@ -207,12 +207,13 @@ TEST(RevisitTracker, FindNoWayWhereALoopIsWrong) {
   EXPECT_EQ(num_known(result, kWrong), 0U);
 }
 
-/// A link that was taken for sure.
+/// A wrong edge whose probability is high.
 TEST(RevisitTracker, GetLostWhereSomethingElseIsSeen) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
   KnownGraph known = wrong_at(laps, kWrong, {0.7, 0.0, 5 * kDegree});
-  known.graph.edges[kWrong - 1].candidates = known.graph.edges[kWrong - 2].candidates;  // sure by what it seems to be
+  known.graph.edges[kWrong - 1].candidates =
+      known.graph.edges[kWrong - 2].candidates;  // these state a high probability
   known.graph.edges[kWrong - 1].candidates.front().ref_from_query =
       inverse(laps.truth[kWrong - 1]) * laps.truth[kWrong] * Pose2{0.7, 0.0, 5 * kDegree};
   ASSERT_GE(stated_probability(known.graph.edges[kWrong - 1]), kLocalization.redundancy.sure_edge);
@@ -221,7 +222,7 @@ TEST(RevisitTracker, GetLostWhereSomethingElseIsSeen) {
   EXPECT_EQ(num_known(result, kWrong), 0U);
 }
 
-/// Errors that add up where nobody has been get no robot lost, and none of those keyframes goes.
+/// Errors that add up in an unknown area must not make the robot lost, and its keyframes must stay.
 TEST(RevisitTracker, GoOnWhereNobodyHasBeen) {
   const Laps& laps = two_laps();
   constexpr std::size_t kHalf = test::kRingLap / 2;
@@ -232,8 +233,8 @@ TEST(RevisitTracker, GoOnWhereNobodyHasBeen) {
   EXPECT_EQ(result.map.component[result.num_followed - 1], 0U);
 }
 
-/// What is not certain yet stays in doubt also when the keyframe before it is known again, and goes.
-TEST(RevisitTracker, LeaveTheLinkToWhatComesNextAsItIs) {
+/// An edge to a keyframe that is not certain yet stays as it is when the keyframe before it is culled.
+TEST(RevisitTracker, LeaveTheEdgeToWhatComesNextAsItIs) {
   const Laps& laps = two_laps();
   constexpr std::size_t kWrong = kSettled + 4;
   for (const bool lost : {false, true}) {
@@ -259,7 +260,7 @@ TEST(RevisitTracker, ForgiveAPlaceThatHasChanged) {
   EXPECT_GE(num_known(result) + 2, num_known(followed(laps, KnownGraph(laps))));
 }
 
-TEST(RevisitTracker, KnowNothingAgainInAnotherLog) {
+TEST(RevisitTracker, KnowNothingAgainInAnotherSession) {
   const Laps& laps = two_laps();
   constexpr std::size_t kStart = kSettled + 4;
   KnownGraph known(laps);
@@ -276,7 +277,7 @@ TEST(RevisitTracker, KnowNothingAgainInAnotherLog) {
   for (std::size_t b = kStart; b < end_of_followed(laps); ++b) EXPECT_NE(result.map.component[b], 0U) << b;
 }
 
-/// In small portions, with keyframes retired between, as the log is read.
+/// Keyframes come in small portions and are culled in between, as in a mapper.
 TEST(RevisitTracker, GoOnWhereTheyWere) {
   const Laps& laps = two_laps();
   KnownGraph all(laps);
@@ -293,7 +294,7 @@ TEST(RevisitTracker, GoOnWhereTheyWere) {
   RevisitTracker revisits(options.robust);
   revisits.start(known.graph, map, kSettled);
   LoopCandidates loops;
-  std::size_t num_retired = 0;
+  std::size_t num_culled = 0;
   for (std::size_t next = kSettled + kLocalization.redundancy.keyframes_in_use; next < laps.truth.size(); next += 7) {
     for (std::size_t i = next; i < std::min(next + 7, laps.truth.size()); ++i) {
       known.graph.keyframes.push_back(all.graph.keyframes[i]);
@@ -301,7 +302,7 @@ TEST(RevisitTracker, GoOnWhereTheyWere) {
     }
     choose_candidates(known.graph);
     RevisitTracker::Followed result = revisits.follow(known.graph, {});
-    num_retired += num_known(result);
+    num_culled += num_known(result);
     const std::size_t num_open = known.graph.keyframes.size() - result.num_followed;
     cull_keyframes(result.redundant, quick(), result.map, known.graph, loops);
     ASSERT_EQ(result.map.map_from_keyframe.size(), known.graph.keyframes.size());
@@ -316,8 +317,8 @@ TEST(RevisitTracker, GoOnWhereTheyWere) {
     }
     revisits.renew(std::move(result.map), num_open);
   }
-  EXPECT_EQ(num_retired, num_known(followed(laps, all)));
-  EXPECT_EQ(known.graph.keyframes.size(), laps.truth.size() - num_retired);
+  EXPECT_EQ(num_culled, num_known(followed(laps, all)));
+  EXPECT_EQ(known.graph.keyframes.size(), laps.truth.size() - num_culled);
 }
 
 }  // namespace

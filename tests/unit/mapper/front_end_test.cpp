@@ -15,9 +15,9 @@ using test::HasSameBits;
 using test::IsNearPose;
 using ::testing::Each;
 
-constexpr std::size_t kBlock = 32;  // positions that the chain works on together; no result may show it
+constexpr std::size_t kBlock = 32;  // number of scans that are worked on together; it must not change a result
 
-/// Poses of a walk round the middle of the room that turns as it likes.
+/// Returns the poses of a walk round the middle of the room, with any headings.
 std::vector<Pose2> walk(std::size_t count) {
   std::vector<Pose2> poses;
   for (std::size_t i = 0; i < count; ++i) {
@@ -43,13 +43,13 @@ MapResult mapped(const Log& log, const MappingOptions& options = {}) {
   return map_log(log, options, nobody);
 }
 
-/// Errors add up, and nothing else moves what was chained.
+/// Without loops, poses are the composed edges, whose errors add up.
 MappingOptions without_loops(MappingOptions options = {}) {
   options.robust.loops.close_loops = false;
   return options;
 }
 
-/// A coarser search, for tests that do not ask for the right pose.
+/// Returns a coarser search, for tests that do not need the right pose.
 MappingOptions quick() {
   MappingOptions options;
   options.robust.matcher.search.candidates.rotation_peaks = 3;
@@ -62,7 +62,7 @@ MappingOptions quick() {
   return options;
 }
 
-/// All scans ask the scans further back.
+/// All edges are in doubt, so that multi-reference candidates are searched.
 MappingOptions in_doubt() {
   MappingOptions options = quick();
   options.robust.front_end.doubt_below = 1.0;
@@ -121,7 +121,7 @@ TEST(FrontEnd, OfNothingAndOfBlindScansIsNoMap) {
   for (const ScanResult& scan : result.scans) EXPECT_FALSE(scan.reason.empty());
 }
 
-TEST(FrontEnd, OfOneScanIsOneFragmentOfOneAtTheOrigin) {
+TEST(FrontEnd, OfOneScanIsOneComponentOfOneAtTheOrigin) {
   const MapResult result = mapped(log_of({{0.3, 0.2, 0.5}}));
   ASSERT_EQ(result.placed().size(), 1U);
   EXPECT_THAT(result.placed()[0].map_from_robot, HasSameBits(Pose2{}));
@@ -161,7 +161,7 @@ TEST(FrontEnd, IsTheSameToTheBitForAnyNumberOfThreads) {
   }
 }
 
-/// Blind positions in front shift where the blocks begin.
+/// Blind scans at the start shift the borders of the blocks.
 TEST(FrontEnd, BordersOfBlocksChangeNothing) {
   const Log log = log_of(walk(kBlock + 8));
   for (const MappingOptions& options : {quick(), in_doubt()}) {
@@ -176,7 +176,7 @@ TEST(FrontEnd, BordersOfBlocksChangeNothing) {
   }
 }
 
-TEST(FrontEnd, PosesThatAPositionMayHaveAreApart) {
+TEST(FrontEnd, PosesThatAScanMayHaveAreApart) {
   for (const ScanResult& scan : mapped(log_of(walk(12)), in_doubt()).scans) {
     const std::vector<RankedPose>& ranked = scan.match.ranked;
     for (std::size_t i = 0; i < ranked.size(); ++i) {
@@ -194,17 +194,17 @@ TEST(FrontEnd, PosesThatAPositionMayHaveAreApart) {
 struct Stopper : MappingEvents {
   explicit Stopper(std::size_t times) : stop_at(times) {}
   bool keep_going() override { return ++asked < stop_at; }
-  void on_stage(std::string_view stage) override { is_chain = stage == "chain"; }
+  void on_stage(std::string_view stage) override { is_tracking = stage == "chain"; }
   void on_progress(std::size_t now_done, std::size_t of) override {
-    if (!is_chain) return;
+    if (!is_tracking) return;
     EXPECT_GT(now_done, done);
     EXPECT_LE(now_done, of);
     done = now_done;
   }
   std::size_t stop_at;
   std::size_t asked = 0;
-  std::size_t done = 0;  ///< positions
-  bool is_chain = false;
+  std::size_t done = 0;  ///< number of scans
+  bool is_tracking = false;
 };
 
 TEST(FrontEnd, TellsTheObserverUntilAllIsDone) {
@@ -248,7 +248,7 @@ TEST(FrontEnd, SplitsWhereItIsToldToAndSaysWhy) {
   EXPECT_EQ(mapped(log, options).components.size(), 1U);
 }
 
-TEST(FrontEnd, RefusedAlignmentsKeepTheMapInOnePieceAndAreReported) {
+TEST(FrontEnd, RefusedMatchesKeepTheMapInOnePieceAndAreReported) {
   MappingOptions options;
   options.robust.matcher.confidence.min_agree = 1.0;
   const MapResult result = mapped(log_of(walk(4)), options);
@@ -261,7 +261,7 @@ TEST(FrontEnd, RefusedAlignmentsKeepTheMapInOnePieceAndAreReported) {
   }
 }
 
-TEST(FrontEnd, ExtremeOptionsOfTheChainStillMakeAMap) {
+TEST(FrontEnd, ExtremeOptionsStillMakeAMap) {
   const Log log = log_of(walk(kBlock + 2));
   for (const int more_references : {0, 1, 10}) {
     for (const double three_scan_weight : {0.0, 10.0}) {
@@ -295,7 +295,7 @@ TEST(FrontEnd, CountsTheSecondsOfItsStages) {
   EXPECT_EQ(result.times.icp_s, 0.0);
 }
 
-/// A room with a bare corridor: what was learned in the one tells how far the robot goes in the other.
+/// In a room with a bare corridor, the motion prior that was learned in the room decides about the corridor.
 TEST(FrontEnd, GoesAlongABareCorridorAsFarAsItUsuallyDoes) {
   test::World world = test::bare_corridor();
   for (int k = 0; k < 14; ++k) test::add_box(world, {0.9 * k, k % 2 == 0 ? 0.9 : -0.9, 0.3 * k}, 0.2, 0.15);
@@ -314,7 +314,7 @@ TEST(FrontEnd, GoesAlongABareCorridorAsFarAsItUsuallyDoes) {
   }
 }
 
-/// Views are let go meanwhile, and nothing shows it.
+/// The views that are released meanwhile must not change the result.
 TEST(FrontEnd, OfMoreKeyframesThanAreKeptWithoutLoopsIsOne) {
   MappingOptions options = without_loops(quick());
   options.robust.keyframes.step_m = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Of a robot that goes round and round a ring: keyframes that are there already are let go.
+// A robot goes round a ring several times, and redundant keyframes are culled.
 #include "mapper/keyframe_culling.hpp"
 
 #include <gmock/gmock.h>
@@ -64,7 +64,7 @@ TEST(RedundantKeyframes, TellARightMapFromOneThatIsFolded) {
   EXPECT_GT(of_right.num_again, test::kRingLap / 4);
   EXPECT_TRUE(of_right.are_of_right_map());
   KnownGraph folded(laps);
-  for (std::size_t b = test::kRingLap; b < laps.truth.size(); ++b) {  // the second lap, a bit further round
+  for (std::size_t b = test::kRingLap; b < laps.truth.size(); ++b) {  // shifts the second lap along the ring
     folded.map.map_from_keyframe[b] = laps.truth[b - 5];
   }
   const RedundantKeyframes of_folded = find_redundant_keyframes(folded.graph, folded.map, quick().robust, 1);
@@ -87,7 +87,7 @@ TEST(RedundantKeyframes, AreNotForKeyframesInDoubt) {
   ASSERT_NE(first, all.end());
   const auto b = static_cast<std::size_t>(first - all.begin());
   known.map.loop_constrained[b] = false;
-  known.graph.edges[b].choice.margin = 0.01;  // another place fits as well
+  known.graph.edges[b].choice.margin = 0.01;  // makes the edge doubtful
   ASSERT_LT(edge_probability(known.graph.edges[b]), 0.6);
   EXPECT_FALSE(find_redundant_keyframes(known.graph, known.map, quick().robust, 1).of_keyframe[b]);
   known.map.loop_constrained[b] = true;
@@ -96,45 +96,45 @@ TEST(RedundantKeyframes, AreNotForKeyframesInDoubt) {
   EXPECT_FALSE(find_redundant_keyframes(known.graph, known.map, quick().robust, 1).of_keyframe[b]);
 }
 
-TEST(RetiredKeyframes, LeaveAChainThatSaysWhatTheMapDid) {
+TEST(KeyframeCulling, LeavesAGraphThatAgreesWithTheMap) {
   const Laps& laps = two_laps();
   KnownGraph known(laps);
   const auto redundant = find_redundant_keyframes(known.graph, known.map, quick().robust, 1).of_keyframe;
   MatchCandidate here;
   here.ref_from_query = {0.1, 0.2, 0.3};
-  const std::size_t retired = static_cast<std::size_t>(
+  const std::size_t culled = static_cast<std::size_t>(
       std::find_if(redundant.begin(), redundant.end(), [](const auto& s) { return s.has_value(); }) -
       redundant.begin());
-  known.graph.attached.push_back({1000, retired, here});
+  known.graph.attached.push_back({1000, culled, here});
   LoopCandidates loops;
   loops.num_searched = laps.truth.size() - kLocalization.redundancy.keyframes_in_use;
   cull_keyframes(redundant, quick(), known.map, known.graph, loops);
 
-  const auto num_retired = static_cast<std::size_t>(
+  const auto num_culled = static_cast<std::size_t>(
       std::count_if(redundant.begin(), redundant.end(), [](const auto& s) { return s.has_value(); }));
-  ASSERT_EQ(known.graph.keyframes.size(), laps.truth.size() - num_retired);
+  ASSERT_EQ(known.graph.keyframes.size(), laps.truth.size() - num_culled);
   ASSERT_EQ(known.graph.edges.size(), known.graph.keyframes.size() - 1);
-  EXPECT_EQ(known.graph.attached.size(), num_retired + 1);
+  EXPECT_EQ(known.graph.attached.size(), num_culled + 1);
   EXPECT_EQ(loops.num_searched, known.graph.keyframes.size() - kLocalization.redundancy.keyframes_in_use);
 
   std::set<std::size_t> all;
   for (const Keyframe& keyframe : known.graph.keyframes) all.insert(keyframe.scan_index);
-  std::size_t num_settled = 0;
+  std::size_t num_renewed = 0;
   for (std::size_t i = 0; i < known.graph.edges.size(); ++i) {
     const Pose2& a = laps.truth[known.graph.keyframes[i].scan_index];
     const Pose2& b = laps.truth[known.graph.keyframes[i + 1].scan_index];
     const PoseConstraint edge = edge_constraint(known.graph, i, 0);
     EXPECT_THAT(edge.a_from_b, test::IsNearPose(inverse(a) * b, 1e-9, 1e-9));
     if (!known.graph.edges[i].culled_covariance) continue;
-    ++num_settled;
+    ++num_renewed;
     EXPECT_EQ(edge_probability(known.graph.edges[i]), 1.0);
     EXPECT_TRUE(edge.covariance.allFinite());
   }
-  EXPECT_GT(num_settled, 0U);
+  EXPECT_GT(num_renewed, 0U);
   for (const AttachedScan& scan : known.graph.attached) {
     const Pose2 keyframe = laps.truth[known.graph.keyframes[scan.keyframe].scan_index];
     const bool is_mine = scan.scan_index == 1000;
-    const Pose2 truth = is_mine ? laps.truth[retired] * here.ref_from_query : laps.truth[scan.scan_index];
+    const Pose2 truth = is_mine ? laps.truth[culled] * here.ref_from_query : laps.truth[scan.scan_index];
     EXPECT_THAT(keyframe * scan.pose.ref_from_query, test::IsNearPose(truth, 0.10, 2 * kDegree));
     EXPECT_TRUE(is_mine || all.insert(scan.scan_index).second);
   }
@@ -146,7 +146,7 @@ TEST(RetiredKeyframes, LeaveAChainThatSaysWhatTheMapDid) {
   }
 }
 
-TEST(RetiredKeyframes, NoneMeansThatNothingChanges) {
+TEST(KeyframeCulling, OfNoneChangesNothing) {
   const Laps& laps = two_laps();
   KnownGraph known(laps);
   LoopCandidates loops;
@@ -164,8 +164,8 @@ TEST(RetiredKeyframes, NoneMeansThatNothingChanges) {
   EXPECT_EQ(loops.num_bridged, 69U);
 }
 
-/// Four times round: the map is as right as without, and has not four times as many keyframes.
-TEST(SettledMap, NeedsNoMoreKeyframesForMoreLaps) {
+/// After four laps, the map is as right as without culling, and has fewer keyframes.
+TEST(KeyframeCulling, NeedsNoMoreKeyframesForMoreLaps) {
   const Laps laps(4 * test::kRingLap);
   const MapResult all = mapped(laps.log, quick());
   EXPECT_EQ(num_keyframes(all), laps.truth.size());

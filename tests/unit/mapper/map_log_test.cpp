@@ -18,7 +18,7 @@ using test::HasSameBits;
 using test::IsNearPose;
 using ::testing::ElementsAre;
 
-/// Poses of a slow walk through the middle of the room.
+/// Returns the poses of a slow walk through the middle of the room.
 std::vector<Pose2> walk(std::size_t count) {
   std::vector<Pose2> poses;
   for (std::size_t i = 0; i < count; ++i) {
@@ -63,7 +63,7 @@ std::vector<int> components_of(const MapResult& result) {
   return components;
 }
 
-TEST(MapLog, OfNoPositionsIsNoMap) {
+TEST(MapLog, OfNoScansIsNoMap) {
   const MapResult result = mapped({});
   EXPECT_TRUE(result.components.empty());
   EXPECT_TRUE(result.scans.empty());
@@ -72,7 +72,7 @@ TEST(MapLog, OfNoPositionsIsNoMap) {
   EXPECT_FALSE(result.interrupted);
 }
 
-TEST(MapLog, OfOneScanIsOneFragmentOfOneAtTheOrigin) {
+TEST(MapLog, OfOneScanIsOneComponentOfOneAtTheOrigin) {
   const MapResult result = mapped(log_of(test::uneven_room(), {{0.3, 0.2, 0.5}}));
   ASSERT_EQ(result.components.size(), 1U);
   EXPECT_EQ(result.largest_component, 0);
@@ -128,7 +128,7 @@ TEST(MapLog, PosesAreTheAlignmentsInARow) {
   }
 }
 
-TEST(MapLog, APositionWithoutReturnsIsInNoFragmentAndTheNextStartsOne) {
+TEST(MapLog, AScanWithoutReturnsIsInNoComponentAndTheNextStartsOne) {
   Log log = log_of(test::cluttered_room(2), walk(4));
   log.scans.insert(log.scans.begin() + 2, blind());
   const MapResult result = mapped(log);
@@ -142,7 +142,7 @@ TEST(MapLog, APositionWithoutReturnsIsInNoFragmentAndTheNextStartsOne) {
   EXPECT_THAT(result.components[1].scans[0].map_from_robot, HasSameBits(Pose2{}));
 }
 
-TEST(MapLog, OfBlindPositionsIsNoMapButAReportOfEach) {
+TEST(MapLog, OfBlindScansIsNoMapButAReportOfEach) {
   Log log;
   log.scans.assign(3, blind());
   const MapResult result = mapped(log);
@@ -152,7 +152,7 @@ TEST(MapLog, OfBlindPositionsIsNoMapButAReportOfEach) {
   for (const ScanResult& scan : result.scans) EXPECT_FALSE(scan.reason.empty());
 }
 
-TEST(MapLog, APositionThatIsNotTrustedStartsAFragmentAndSaysWhy) {
+TEST(MapLog, AScanThatIsNotTrustedStartsAComponentAndSaysWhy) {
   MappingOptions options = test::paper_options();
   options.paper.trust.min_correspondences = 100000;
   const MapResult result = mapped(log_of(test::cluttered_room(2), walk(3)), options);
@@ -164,7 +164,7 @@ TEST(MapLog, APositionThatIsNotTrustedStartsAFragmentAndSaysWhy) {
   EXPECT_TRUE(result.scans[0].reason.empty());
 }
 
-TEST(MapLog, TheLargestFragmentMakesTheMap) {
+TEST(MapLog, TheLargestComponentMakesTheMap) {
   Log log = log_of(test::cluttered_room(2), walk(5));
   log.scans.insert(log.scans.begin() + 2, blind());
   const MapResult result = mapped(log);
@@ -173,13 +173,13 @@ TEST(MapLog, TheLargestFragmentMakesTheMap) {
   EXPECT_EQ(result.placed()[0].scan_index, 3U);
 }
 
-TEST(MapLog, OfEquallyLargeFragmentsTheFirstMakesTheMap) {
+TEST(MapLog, OfEquallyLargeComponentsTheFirstMakesTheMap) {
   Log log = log_of(test::cluttered_room(2), walk(4));
   log.scans.insert(log.scans.begin() + 2, blind());
   EXPECT_EQ(mapped(log).largest_component, 0);
 }
 
-/// Remembers what it was told and stops when asked for the `stop_at`th time after `done` positions.
+/// Records the progress, and asks to stop at the `stop_at`th question after `done` scans.
 struct Watcher : MappingEvents {
   explicit Watcher(std::size_t stop, std::size_t done = 0) : stop_at(stop), stop_after(done) {}
   void on_progress(std::size_t done, std::size_t total) override { progress.emplace_back(done, total); }
@@ -191,7 +191,7 @@ struct Watcher : MappingEvents {
   std::vector<std::pair<std::size_t, std::size_t>> progress;
 };
 
-TEST(MapLog, TellsTheObserverOfEachPosition) {
+TEST(MapLog, TellsTheObserverOfEachScan) {
   Watcher watcher(100);
   const MapResult result = map_log(log_of(test::uneven_room(), walk(3)), test::paper_options(), watcher);
   using Step = std::pair<std::size_t, std::size_t>;
@@ -204,8 +204,8 @@ TEST(MapLog, StopsWhenTheObserverAsksAndKeepsWhatIsMapped) {
   const Log log = log_of(test::cluttered_room(2), walk(4));
   const MapResult whole = mapped(log);
   for (const int threads : {1, 4}) {
-    for (const std::size_t stop_at : {1U, 2U, 4U, 7U}) {  // before the third position, at a rotation, after the last
-      if (threads > 1 && stop_at > 2) continue;           // how often they ask depends on how they share the work
+    for (const std::size_t stop_at : {1U, 2U, 4U, 7U}) {  // before the third scan, at a rotation, after the last
+      if (threads > 1 && stop_at > 2) continue;  // the number of questions depends on how threads share the work
       Watcher watcher(stop_at, 2);
       MappingOptions options = test::paper_options();
       options.run.threads = threads;
@@ -226,7 +226,7 @@ TEST(MapLog, StoppedAtOnceHasNothing) {
   EXPECT_EQ(result.largest_component, -1);
 }
 
-TEST(MapLog, EveryPositionHasACorrectionPerSubScan) {
+TEST(MapLog, EveryScanHasACorrectionPerSweep) {
   const Log log = log_of(test::cluttered_room(2), walk(3), four_sweeps());
   for (const bool decoupled : {false, true}) {
     MappingOptions options = test::paper_options();

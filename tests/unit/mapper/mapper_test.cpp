@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The whole of the robust method on made-up worlds: loops, several logs, interruptions.
+// The whole robust method on simulated worlds: loops, several sessions, interruptions.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 using test::HasSameBits;
 using ::testing::ElementsAre;
 
-/// A coarser search than by default.
+/// Returns options for a coarser search than by default.
 MappingOptions quick() {
   MappingOptions options = test::quick_mapping();
   options.robust.loop_detection.likely_places = 4;
@@ -48,7 +48,7 @@ std::vector<std::size_t> sizes_of(const MapResult& result) {
   return sizes;
 }
 
-/// Each position that was looked at is in one fragment, and all of it can be trusted to be there.
+/// Checks that each scan of the result is in exactly one component, with a finite pose and all its sweeps.
 void expect_whole(const MapResult& result, const Log& log) {
   ASSERT_LE(result.scans.size(), log.scans.size());
   std::map<std::size_t, int> component_of;
@@ -88,14 +88,14 @@ void expect_same_bits(const MapResult& a, const MapResult& b) {
   for (std::size_t k = 0; k < a.loops.size(); ++k) EXPECT_EQ(a.loops[k].strength, b.loops[k].strength);
 }
 
-/// Once round the ring, and a few steps more.
+/// A walk once round the ring and a few steps more.
 struct Ring {
   Ring() { add_walk(log, test::ring_world(1), truth); }
   std::vector<Pose2> truth = test::ring_walk(test::kRingLap + 6, 2);
   Log log;
 };
 
-TEST(RobustMap, KnowsARingAgainWhenItHasComeRound) {
+TEST(Mapper, ClosesTheLoopOfARing) {
   const Ring ring;
   const MapResult result = mapped(ring.log);
   expect_whole(result, ring.log);
@@ -111,7 +111,7 @@ TEST(RobustMap, KnowsARingAgainWhenItHasComeRound) {
   EXPECT_GT(result.times.loops_s, 0.0);
 }
 
-TEST(RobustMap, WithoutLoopsIsTheChainAsItIs) {
+TEST(Mapper, WithoutLoopsComposesTheEdges) {
   const Ring ring;
   MappingOptions options = quick();
   options.robust.loops.close_loops = false;
@@ -120,8 +120,8 @@ TEST(RobustMap, WithoutLoopsIsTheChainAsItIs) {
   EXPECT_TRUE(result.loops.empty());
   const std::vector<Pose2> poses = poses_of(result.components.at(0));
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    const Pose2 chained = poses[i - 1] * result.scans[i].match.ref_from_query;
-    EXPECT_THAT(poses[i], test::IsNearPose(chained, 1e-9, 1e-9));
+    const Pose2 composed = poses[i - 1] * result.scans[i].match.ref_from_query;
+    EXPECT_THAT(poses[i], test::IsNearPose(composed, 1e-9, 1e-9));
     EXPECT_FALSE(result.scans[i].loop_constrained);
   }
 }
@@ -136,7 +136,7 @@ struct TwoLogs {
   Log log;
 };
 
-TEST(RobustMap, OfTwoLogsOfOnePlaceIsOneMap) {
+TEST(Mapper, OfTwoLogsOfOnePlaceIsOneMap) {
   const TwoLogs two(test::ring_world(1));
   const MapResult result = mapped(two.log);
   expect_whole(result, two.log);
@@ -148,8 +148,8 @@ TEST(RobustMap, OfTwoLogsOfOnePlaceIsOneMap) {
   EXPECT_FALSE(result.scans[two.first.size()].starts_component);
 }
 
-TEST(RobustMap, OfTwoLogsOfDifferentPlacesIsOneMapEach) {
-  test::World other;  // a hall with pillars
+TEST(Mapper, OfTwoLogsOfDifferentPlacesIsOneMapEach) {
+  test::World other;  // is a hall with pillars
   test::add_box(other, {}, 9.0, 7.0);
   for (int k = 0; k < 9; ++k) test::add_box(other, {-6.0 + 1.4 * k, k % 3 - 1.0, 0.3 * k}, 0.2, 0.1 + 0.05 * k);
   const TwoLogs two(other);
@@ -162,8 +162,8 @@ TEST(RobustMap, OfTwoLogsOfDifferentPlacesIsOneMapEach) {
   for (const ClosedLoop& loop : result.loops) EXPECT_EQ(loop.a < two.first.size(), loop.b < two.first.size());
 }
 
-/// Where a log starts, nothing before it is asked: even if the scans there are the same.
-TEST(RobustMap, ChainsNothingFromOneLogToTheNext) {
+/// Scans of another session are no references, even if they are the same.
+TEST(Mapper, MatchesNothingAcrossSessions) {
   Log log;
   const std::vector<Pose2> walk = test::ring_walk(5, 5);
   add_walk(log, test::ring_world(1), walk);
@@ -172,11 +172,11 @@ TEST(RobustMap, ChainsNothingFromOneLogToTheNext) {
   ASSERT_EQ(mapped(log, options).components.size(), 1U);
   log.starts = {2, 4};
   EXPECT_THAT(sizes_of(mapped(log, options)), ElementsAre(2, 2, 1));
-  log.scans.insert(log.scans.begin() + 4, test::blind_scan());  // the log starts blind
+  log.scans.insert(log.scans.begin() + 4, test::blind_scan());  // the session starts blind
   EXPECT_THAT(sizes_of(mapped(log, options)), ElementsAre(2, 2, 1));
 }
 
-TEST(RobustMap, IsTheSameToTheBitForAnyNumberOfThreads) {
+TEST(Mapper, IsTheSameToTheBitForAnyNumberOfThreads) {
   const TwoLogs two(test::ring_world(1));
   MappingOptions options = quick();
   const MapResult one = mapped(two.log, options);
@@ -184,7 +184,7 @@ TEST(RobustMap, IsTheSameToTheBitForAnyNumberOfThreads) {
   expect_same_bits(mapped(two.log, options), one);
 }
 
-TEST(RobustMap, StoppedAtAnyTimeIsWhole) {
+TEST(Mapper, StoppedAtAnyTimeIsWhole) {
   const TwoLogs two(test::ring_world(1));
   MappingOptions options = quick();
   options.robust.loop_detection.likely_places = 2;

@@ -21,7 +21,7 @@ using test::HasSameBits;
 using ::testing::ElementsAre;
 
 constexpr std::size_t kCount = 6;
-constexpr std::size_t kBlind = 3;  ///< of these positions, the one without returns
+constexpr std::size_t kBlind = 3;  ///< index of the scan without returns
 
 Log walk_with_a_blind_scan() {
   Log log;
@@ -37,11 +37,11 @@ Log walk_with_a_blind_scan() {
 MappingOptions options_of(Method method) {
   MappingOptions options = test::paper_options();
   options.run.method = method;
-  options.robust.keyframes.step_m = 0.0;  // each scan is aligned to the one before it
+  options.robust.keyframes.step_m = 0.0;  // each scan is matched to the one before it
   return options;
 }
 
-/// Keeps copies of what it is shown.
+/// Keeps copies of the events.
 struct Recorder : MappingEvents {
   struct Edge {
     std::size_t reference, query, num_own;
@@ -100,7 +100,7 @@ TEST(MappingEvents, SeesEachAlignmentOfThePapersMethodWithItsTargets) {
   Recorder recorder;
   const MapResult result = mapped(walk_with_a_blind_scan(), Method::kPaper, &recorder);
   EXPECT_TRUE(recorder.edges.empty());
-  EXPECT_THAT(recorder.queries, ElementsAre(1, 2, 5));  // 4 has nothing before it
+  EXPECT_THAT(recorder.queries, ElementsAre(1, 2, 5));  // scan 4 has nothing before it
   for (std::size_t k = 0; k < recorder.queries.size(); ++k) {
     const PaperAlignment& alignment = recorder.alignments[k];
     const PaperTrace& steps = recorder.steps[k];
@@ -125,7 +125,7 @@ TEST(MappingEvents, SeesWhatTheRobustMethodChoosesFrom) {
   EXPECT_TRUE(recorder.alignments.empty());
   ASSERT_EQ(recorder.edges.size(), 4U);
   ASSERT_EQ(recorder.choices.size(), 4U);
-  EXPECT_EQ(recorder.edges[2].reference, 2U);  // across the blind one
+  EXPECT_EQ(recorder.edges[2].reference, 2U);  // the edge passes over the blind scan
   EXPECT_EQ(recorder.edges[2].query, 4U);
   for (std::size_t k = 0; k < recorder.edges.size(); ++k) {
     const Recorder::Edge& edge = recorder.edges[k];
@@ -149,7 +149,7 @@ TEST(MappingEvents, SeesHowLittleNarrowScansSeeAndThatCountsInTheResult) {
     log.scans.push_back(test::scan_of(test::cluttered_room(2), {x_m, 0.0, 0.0}, narrow));
   }
   MappingOptions options = options_of(Method::kRobust);
-  options.robust.edge_verification.doubt_below = 0.0;  // judged by the two scans
+  options.robust.edge_verification.doubt_below = 0.0;  // edges are judged by their two scans
   Recorder recorder;
   const MapResult result = map_log(log, options, recorder);
   ASSERT_EQ(recorder.edges.size(), 1U);
@@ -173,7 +173,7 @@ TEST(MappingEvents, WhatItThrowsEndsTheRun) {
   }
 }
 
-/// Counts what the back end tells, and checks that no two calls come at a time.
+/// Counts the events of the back end, and checks that calls never overlap.
 struct Counter : MappingEvents {
   void on_stage(std::string_view) override {
     entered([&] { caller = std::this_thread::get_id(); });

@@ -15,7 +15,7 @@ namespace {
 using test::HasSameBits;
 using test::IsNearPose;
 
-/// Poses that turn a lot.
+/// Returns poses with large turns.
 const std::vector<Pose2> kPoses{{-0.4, 0.1, 0.0}, {0.0, -0.2, 70 * kDegree}, {0.5, 0.1, -120 * kDegree}};
 
 Log log_of(const std::vector<Pose2>& poses) {
@@ -55,7 +55,7 @@ TEST(AlignPairs, FindsEveryPair) {
 
 TEST(AlignPairs, AreTheSameForAnyNumberOfThreadsAndWhateverCameBefore) {
   const Log log = log_of(kPoses);
-  const std::vector<ScanPair> pairs = all_pairs(5);  // more than are worked on together
+  const std::vector<ScanPair> pairs = all_pairs(5);  // more pairs than are worked on together
   const std::vector<AlignedPair> one = aligned(log, pairs, 1);
   const std::vector<AlignedPair> three = aligned(log, pairs, 3);
   ASSERT_EQ(one.size(), pairs.size());

@@ -16,7 +16,7 @@ struct Walk {
   std::vector<PlacedScan> placed;
 };
 
-/// A walk that turns at random, and what a robot with slipping wheels took for its heading.
+/// Returns a walk with random turns, and the headings that a robot with slipping wheels would record.
 Walk walk(int num_scans, double handedness, double slip_rad, double turn_rad) {
   std::mt19937 rng(4);
   std::normal_distribution<double> noise(0.0, 1.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scans that are pushed into a mapper, one by one or several at a time.
+// Scans are pushed into a mapper, one by one or several at a time.
 #include <gmock/gmock.h>
 
 #include <Eigen/LU>
@@ -19,13 +19,13 @@
 namespace shapemap {
 namespace {
 
-/// Three laps round a ring: keyframes are culled, and places known again.
+/// Three laps round a ring, so that keyframes are culled, and the robot is localized.
 const test::Laps& laps() {
   static const test::Laps three_laps(3 * test::kRingLap);
   return three_laps;
 }
 
-/// One lap, and the begin of the next.
+/// One lap and the start of the next.
 const test::Laps& one_lap() {
   static const test::Laps lap(test::kRingLap + 10);
   return lap;
@@ -43,7 +43,7 @@ struct Pushed {
   std::vector<std::shared_ptr<const Map>> maps;
 };
 
-/// `group` scans at a time; 0: all at once.
+/// Pushes `group` scans at a time; 0: all at once.
 Pushed pushed(const Log& log, const MappingOptions& options, const LiveOptions& live, std::size_t group) {
   Pushed all;
   Mapper mapper(options, live);
@@ -213,7 +213,7 @@ TEST(Push, OfNothingIsNoMap) {
   }
 }
 
-/// The end of a mapper does not wait for a map that nobody will see.
+/// The destructor of a mapper does not wait for a map that nobody will see.
 TEST(Push, MayBeLeftUnfinished) {
   for (const bool background : {false, true}) {
     Mapper mapper(culling(), {true, background});
@@ -221,7 +221,7 @@ TEST(Push, MayBeLeftUnfinished) {
   }
 }
 
-/// Two threads that look on see whole maps only.
+/// Two other threads only ever see whole maps.
 TEST(Push, LetsOthersLookOn) {
   Mapper mapper(culling(), {true, true});
   std::atomic<bool> is_done{false};

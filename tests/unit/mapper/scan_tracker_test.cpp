@@ -40,7 +40,7 @@ TEST(ScanTracker, ADistanceOrATurnTooFarMakesAKeyframe) {
       const Pose2 step = turning ? Pose2{0.0, 0.0, 4 * kDegree * k} : Pose2{0.08 * k, 0.0, 0.0};
       attached = tracker.follow(*view_at(ahead(0.0) * step, k)).has_value();
     }
-    const unsigned expected = turning ? 5 : 6;  // 0.50 m and 20 degrees
+    const unsigned expected = turning ? 5 : 6;  // limits of 0.50 m and 20 degrees
     EXPECT_NEAR(static_cast<double>(k - 1), expected + 0.5, 1.0) << turning;
   }
 }
@@ -71,7 +71,7 @@ TEST(ScanTracker, WithoutAKeyframeOrWithAStepOfNoneAttachesNothing) {
   EXPECT_FALSE(tracker.follow(*view_at(ahead(0.0))));
 }
 
-TEST(ScanTracker, ExpectsNothingWhenAnotherLogStarts) {
+TEST(ScanTracker, ExpectsNothingWhenAnotherSessionStarts) {
   const MappingOptions options;
   ScanTracker tracker(options.robust);
   tracker.start(view_at(ahead(0.0)));
@@ -83,8 +83,8 @@ TEST(ScanTracker, ExpectsNothingWhenAnotherLogStarts) {
   EXPECT_FALSE(tracker.expected()) << "nobody knows yet how close its scans are";
 }
 
-/// How the robot moved in another log is no hint.
-TEST(ScanTracker, ForgetsTheMotionWhenAnotherLogStarts) {
+/// The motion in another session is no evidence.
+TEST(ScanTracker, ForgetsTheMotionWhenAnotherSessionStarts) {
   const MappingOptions options;
   ScanTracker used(options.robust);
   used.start(view_at(ahead(0.0)));
@@ -102,7 +102,7 @@ TEST(ScanTracker, ForgetsTheMotionWhenAnotherLogStarts) {
   EXPECT_THAT(found->ref_from_query, test::HasSameBits(expected->ref_from_query));
 }
 
-/// A keyframe is no reason to stop.
+/// The motion does not end at a keyframe.
 TEST(ScanTracker, ExpectsTheMotionToGoOnAfterAKeyframe) {
   const MappingOptions options;
   ScanTracker tracker(options.robust);
@@ -114,7 +114,7 @@ TEST(ScanTracker, ExpectsTheMotionToGoOnAfterAKeyframe) {
     ++k;
   } while (tracker.follow(*view_at(ahead(along_m), k)));
   tracker.start(view_at(ahead(along_m), k));
-  for (unsigned more = 1; more <= 40; ++more) {  // until it is dense
+  for (unsigned more = 1; more <= 40; ++more) {  // until scans follow each other closely
     if (!tracker.follow(*view_at(ahead(along_m + 0.002 * more), k + more))) break;
   }
   tracker.start(view_at(ahead(along_m)));

@@ -18,8 +18,8 @@ namespace {
 
 using test::HasSameBits;
 
-/// In memory, counting what it is asked.
-struct MemoryStore : MatchCache {
+/// A cache in memory that counts its calls.
+struct CountingCache : MatchCache {
   using Key = std::tuple<std::size_t, std::size_t, SearchKind>;
 
   std::optional<std::vector<MatchCandidate>> find(const MatchKey& key) override {
@@ -36,7 +36,7 @@ struct MemoryStore : MatchCache {
     ++num_kept;
   }
 
-  /// Loses the alignments that `is_lost` says, by their number.
+  /// Removes the matches of which `is_lost` is true, by their number.
   template <class IsLost>
   void lose(IsLost&& is_lost) {
     std::size_t i = 0;
@@ -52,7 +52,7 @@ struct MemoryStore : MatchCache {
   std::size_t limit = 1000000;
 };
 
-/// Two rounds through a room, with a blind scan, so that keyframes are not the positions: loops, doubts and bridges.
+/// Two rounds through a room give loops and doubtful edges. A blind scan makes numbers of keyframes and scans differ.
 Log two_rounds() {
   const test::World world = test::cluttered_room(2);
   std::mt19937 rng(7);
@@ -77,11 +77,11 @@ MappingOptions doubtful() {
   return options;
 }
 
-MapResult mapped(const Log& log, MatchCache* store, int threads = 2) {
+MapResult mapped(const Log& log, MatchCache* cache, int threads = 2) {
   MappingOptions options = doubtful();
   options.run.threads = threads;
   MappingEvents nobody;
-  return map_log(log, options, nobody, store);
+  return map_log(log, options, nobody, cache);
 }
 
 void expect_same_bits(const MapResult& a, const MapResult& b) {
@@ -99,38 +99,38 @@ void expect_same_bits(const MapResult& a, const MapResult& b) {
 TEST(MatchCache, ChangesNothingWhateverItKnows) {
   const Log log = two_rounds();
   const MapResult without = mapped(log, nullptr);
-  MemoryStore store;
-  expect_same_bits(mapped(log, &store), without);
-  ASSERT_GT(store.num_kept, 100U);
-  const auto all = store.known;
+  CountingCache cache;
+  expect_same_bits(mapped(log, &cache), without);
+  ASSERT_GT(cache.num_kept, 100U);
+  const auto all = cache.known;
 
   for (const int share : {2, 3}) {
-    store.known = all;
-    store.lose([&](std::size_t i) { return i % static_cast<std::size_t>(share) == 0; });
-    expect_same_bits(mapped(log, &store, share), without);
-    EXPECT_GT(store.num_found, 0U);
-    EXPECT_GT(store.num_kept, 0U);
-    EXPECT_EQ(store.known.size(), all.size());
+    cache.known = all;
+    cache.lose([&](std::size_t i) { return i % static_cast<std::size_t>(share) == 0; });
+    expect_same_bits(mapped(log, &cache, share), without);
+    EXPECT_GT(cache.num_found, 0U);
+    EXPECT_GT(cache.num_kept, 0U);
+    EXPECT_EQ(cache.known.size(), all.size());
   }
 }
 
 TEST(MatchCache, ThatKnowsAllLeavesNothingToSearch) {
   const Log log = two_rounds();
-  MemoryStore store;
-  mapped(log, &store);
-  store.lose([](std::size_t) { return false; });
-  mapped(log, &store);
-  EXPECT_EQ(store.num_kept, 0U);
+  CountingCache cache;
+  mapped(log, &cache);
+  cache.lose([](std::size_t) { return false; });
+  mapped(log, &cache);
+  EXPECT_EQ(cache.num_kept, 0U);
 }
 
-TEST(MatchCache, IsAskedByPosition) {
-  MemoryStore store;
-  mapped(two_rounds(), &store);
-  using Key = MemoryStore::Key;
-  EXPECT_EQ(store.known.count(Key{4, 6, SearchKind::kFull}), 1U);  // 5 is blind
+TEST(MatchCache, IsAskedByScan) {
+  CountingCache cache;
+  mapped(two_rounds(), &cache);
+  using Key = CountingCache::Key;
+  EXPECT_EQ(cache.known.count(Key{4, 6, SearchKind::kFull}), 1U);  // scan 5 is blind
   std::size_t of_last = 0;
   std::size_t multi_reference = 0;
-  for (const auto& [key, unused] : store.known) {
+  for (const auto& [key, unused] : cache.known) {
     const auto [reference, query, search] = key;
     EXPECT_LT(reference, query);
     EXPECT_NE(reference, 5U);
@@ -144,9 +144,9 @@ TEST(MatchCache, IsAskedByPosition) {
 
 TEST(MatchCache, EndsTheRunWhenItCannotKeep) {
   for (const std::size_t limit : {5U, 90U}) {
-    MemoryStore store;
-    store.limit = limit;
-    EXPECT_THROW(mapped(two_rounds(), &store), std::runtime_error) << limit;
+    CountingCache cache;
+    cache.limit = limit;
+    EXPECT_THROW(mapped(two_rounds(), &cache), std::runtime_error) << limit;
   }
 }
 

@@ -48,7 +48,7 @@ TEST(PoseCovariance, IsLargeAboutTheCentreOfARoundRoom) {
   const Eigen::Matrix3d round = covariance_in(test::round_room(), {}, short_sighted());
   const Eigen::Matrix3d uneven = covariance_in(test::uneven_room(), {}, short_sighted());
   EXPECT_LT(worst_deviation_m(round), 0.10);
-  // Polylines of a circle have corners, which seem to hold it a little.
+  // Polylines of a circle have corners, which seem to constrain the heading a little.
   EXPECT_GT(std::sqrt(round(2, 2)), 2 * kDegree);
   EXPECT_GT(std::sqrt(round(2, 2)), 5 * std::sqrt(uneven(2, 2)));
 }
@@ -60,7 +60,7 @@ TEST(PoseCovariance, IsAlwaysPositiveDefinite) {
     LineFit fit;
     fit.partners = round % 7 == 0 ? 0 : 1 + round;
     fit.lever_m = round % 5 == 0 ? 0.0 : 10.0 * std::abs(normal(rng));
-    for (int k = 0; k < round % 4; ++k) {  // of any rank
+    for (int k = 0; k < round % 4; ++k) {  // gives matrices of any rank
       const Eigen::Vector3d row(normal(rng), normal(rng), 5.0 * normal(rng));
       fit.information += 100.0 * std::abs(normal(rng)) * row * row.transpose();
     }
@@ -135,7 +135,7 @@ TEST(MatchProbability, TellsAClearWinnerFromATie) {
   EXPECT_LT(match_probability(candidate(-10.0, 0.1), 0.0), 0.3);
 }
 
-TEST(ProbabilityOfNeighbours, RisesAndStaysAProbability) {
+TEST(OdometryProbability, RisesAndStaysAProbability) {
   double before = 0.0;
   for (int k = 0; k <= 100; ++k) {
     const double probability = odometry_probability(k / 100.0, 0.0);
@@ -145,13 +145,13 @@ TEST(ProbabilityOfNeighbours, RisesAndStaysAProbability) {
   }
 }
 
-TEST(ProbabilityOfNeighbours, TrustsWhatMayAsWellBeOfTwoPlaces) {
+TEST(OdometryProbability, TrustsWhatMayAsWellBeOfTwoPlaces) {
   EXPECT_GT(odometry_probability(0.5, 0.0), 0.9);
   EXPECT_GT(odometry_probability(0.01, 0.0), 0.5);
   EXPECT_LT(odometry_probability(1e-6, 0.0), 0.1);
 }
 
-TEST(ProbabilityOfNeighbours, FallsWithWhatTheyDoNotSee) {
+TEST(OdometryProbability, FallsWithWhatTheyDoNotSee) {
   for (const double match : {0.01, 0.5, 0.99}) {
     const double odds = log_odds_of(odometry_probability(match, 0.0));
     EXPECT_LT(log_odds_of(odometry_probability(match, 0.1)), odds - 0.5) << match;
@@ -159,7 +159,7 @@ TEST(ProbabilityOfNeighbours, FallsWithWhatTheyDoNotSee) {
   }
 }
 
-TEST(ViewShortfall, IsOfTheScanThatSeesLess) {
+TEST(InsufficientView, IsOfTheScanThatSeesLess) {
   test::Scanner narrow = test::half_circle();
   narrow.num_beams = 91;
   narrow.view_rad = 91 * kDegree;

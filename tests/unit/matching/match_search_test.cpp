@@ -96,7 +96,7 @@ TEST(FindCandidates, FindAPoseWithoutHelpOfTangentPeaks) {
   const ScanView query = test::view_from(test::cluttered_room(2), {0.4, -0.2, -1.3}, test::full_circle(), 2);
   MatchSearchOptions options;
   options.candidates.rotation_peaks = 1;
-  options.candidates.all_rotations_below = 100.0;  // never content: all rotations are tried
+  options.candidates.all_rotations_below = 100.0;  // no score suffices, so that all rotations are tried
   const std::vector<MatchCandidate> poses = find_candidates(reference, query, options);
   ASSERT_FALSE(poses.empty());
   EXPECT_THAT(poses[0].ref_from_query, IsNearPose(Pose2{0.4, -0.2, -1.3}, 0.05, kDegree));
@@ -111,7 +111,7 @@ TEST(FindCandidates, WithAnEmptyScanAreNone) {
   EXPECT_THAT(find_candidates(ScanView{}, ScanView{}, {}), IsEmpty());
 }
 
-TEST(RefinedHypothesis, IsJudgedWhereItEndsUp) {
+TEST(RefinedCandidate, IsJudgedWhereItEndsUp) {
   const ScanView reference = test::view_from(test::cluttered_room(3), {});
   const ScanView query = test::view_from(test::cluttered_room(3), {0.2, 0.1, 0.3}, test::full_circle(), 2);
   const MatchCandidate pose = refined_candidate(reference, query, {0.3, 0.2, 0.35}, {});

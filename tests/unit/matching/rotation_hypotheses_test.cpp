@@ -34,7 +34,7 @@ double correlation(const TangentHistogram& reference, const TangentHistogram& qu
   return sum;
 }
 
-/// The bins of all local maxima, best first, by the definition.
+/// Returns the bins of all local maxima, best first, by their definition.
 std::vector<std::size_t> peaks(const TangentHistogram& reference, const TangentHistogram& query) {
   std::vector<double> heights;
   for (std::size_t turn = 0; turn < kTangentBins; ++turn) heights.push_back(correlation(reference, query, turn));
@@ -61,7 +61,7 @@ TEST(RotationHypotheses, AreThePeaksOfTheCorrelation) {
   }
 }
 
-TEST(RotationHypotheses, ArePutUpBestFirstAndNoMoreThanAskedFor) {
+TEST(RotationHypotheses, AreBestFirstAndNoMoreThanAskedFor) {
   const TangentHistogram reference = random_histogram(1);
   const TangentHistogram query = random_histogram(2);
   const std::vector<double> all = rotation_hypotheses(reference, query, 360);

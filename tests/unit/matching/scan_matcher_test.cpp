@@ -22,7 +22,7 @@ bool is_right(const ScanMatch& match, const Pose2& truth) {
          angle_between(match.ref_from_query.theta_rad, truth.theta_rad) < 2 * kDegree;
 }
 
-TEST(RobustAlign, FindsAnyHeadingAndOffsetInAFurnishedRoom) {
+TEST(MatchScans, FindsAnyHeadingAndOffsetInAFurnishedRoom) {
   std::mt19937 rng(1);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   int num_right = 0;
@@ -46,7 +46,7 @@ TEST(RobustAlign, FindsAnyHeadingAndOffsetInAFurnishedRoom) {
   EXPECT_LE(num_sure_and_wrong, 1);
 }
 
-TEST(RobustAlign, FindsAHalfCirclesNeighbour) {
+TEST(MatchScans, FindsAHalfCirclesNeighbour) {
   std::mt19937 rng(2);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   int num_right = 0;
@@ -60,7 +60,7 @@ TEST(RobustAlign, FindsAHalfCirclesNeighbour) {
   EXPECT_GE(num_right, 34);
 }
 
-TEST(RobustAlign, IsNotSureOfTwoPlacesWithNothingInCommon) {
+TEST(MatchScans, IsNotSureOfTwoPlacesWithNothingInCommon) {
   int num_sure = 0;
   for (unsigned seed = 0; seed < 60; ++seed) {
     const ScanView here = test::view_from(test::strange_place(seed), {}, test::full_circle(), 1);
@@ -70,7 +70,7 @@ TEST(RobustAlign, IsNotSureOfTwoPlacesWithNothingInCommon) {
   EXPECT_LE(num_sure, 1);
 }
 
-TEST(RobustAlign, IsNotSureWhereAlongABareCorridorItStands) {
+TEST(MatchScans, IsNotSureWhereAlongABareCorridorItStands) {
   test::Scanner scanner = test::half_circle();
   scanner.max_range_m = 8.0;
   const ScanView reference = test::view_from(test::bare_corridor(), {}, scanner, 1);
@@ -78,7 +78,7 @@ TEST(RobustAlign, IsNotSureWhereAlongABareCorridorItStands) {
   EXPECT_FALSE(match_scans(reference, query, {}).ok());
 }
 
-TEST(RobustAlign, SaysWhyThereIsNoPose) {
+TEST(MatchScans, SaysWhyThereIsNoPose) {
   const ScanView nothing = test::view_of(test::blind_scan());
   const ScanView room = test::view_from(test::cluttered_room(1), {});
   for (const ScanMatch& match :
@@ -108,7 +108,7 @@ void expect_consistent(const ScanMatch& match) {
   }
 }
 
-TEST(RobustAlign, TakesScansOfOneBeamOrWithReadingsThatAreNone) {
+TEST(MatchScans, TakesScansOfOneBeamOrWithReadingsThatAreNone) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   const ScanView room = test::view_from(test::cluttered_room(1), {});
@@ -135,7 +135,7 @@ TEST(RobustAlign, TakesScansOfOneBeamOrWithReadingsThatAreNone) {
   expect_consistent(match_scans(test::view_of(Scan{}), room, {}));
 }
 
-TEST(RobustAlign, FindsThePoseAlthoughSomeReadingsAreNone) {
+TEST(MatchScans, FindsThePoseAlthoughSomeReadingsAreNone) {
   const test::World world = test::cluttered_room(1);
   std::mt19937 rng(3);
   const Pose2 truth{0.4, 0.2, 1.0};
@@ -146,7 +146,7 @@ TEST(RobustAlign, FindsThePoseAlthoughSomeReadingsAreNone) {
   EXPECT_TRUE(is_right(found, truth));
 }
 
-TEST(RobustAlign, TurnsWithTheQuery) {
+TEST(MatchScans, TurnsWithTheQuery) {
   const test::World world = test::cluttered_room(2);
   const ScanView reference = test::view_from(world, {});
   std::mt19937 rng(4);
@@ -158,12 +158,12 @@ TEST(RobustAlign, TurnsWithTheQuery) {
     const Pose2 turn{0.0, 0.0, turn_rad};
     const ScanMatch turned = match_scans(reference, test::view_of(test::turned(query, turn_rad)), {});
     ASSERT_TRUE(turned.has_pose());
-    // The start of the refinement differs, by the grid of the votes.
+    // The grid of the votes is not turned, so that the refinement starts at another pose.
     EXPECT_THAT(turned.ref_from_query * turn, IsNearPose(found.ref_from_query, 0.02, 0.5 * kDegree)) << k;
   }
 }
 
-TEST(RobustAlign, TurnsWithTheReference) {
+TEST(MatchScans, TurnsWithTheReference) {
   const test::World world = test::cluttered_room(2);
   std::mt19937 rng(4);
   const Scan reference = test::scan_of(world, {0.1, 0.2, 0.0}, test::full_circle(), rng);
@@ -179,7 +179,7 @@ TEST(RobustAlign, TurnsWithTheReference) {
   }
 }
 
-TEST(RobustAlign, IsTheSameToTheBitTheSecondTime) {
+TEST(MatchScans, IsTheSameToTheBitTheSecondTime) {
   const ScanView reference = test::view_from(test::cluttered_room(2), {});
   const ScanView query = test::view_from(test::cluttered_room(2), {0.5, -0.2, 0.3}, test::full_circle(), 2);
   const ScanMatch once = match_scans(reference, query, {});
@@ -189,7 +189,7 @@ TEST(RobustAlign, IsTheSameToTheBitTheSecondTime) {
   EXPECT_EQ(again.ranked.size(), once.ranked.size());
 }
 
-/// A pose that is held in all directions and that most points agree with.
+/// Returns a candidate that is constrained in all directions and with which most points agree.
 MatchCandidate good_candidate(const Pose2& pose, double score) {
   MatchCandidate candidate;
   candidate.ref_from_query = pose;

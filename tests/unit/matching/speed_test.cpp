@@ -12,8 +12,8 @@
 #include "shapemap/matching/scan_matcher.hpp"
 #include "support/views.hpp"
 
-/// Slow-downs by a multiple fail here, on any machine: times are counted in those of a fixed piece of arithmetic, which
-/// is measured in turn with them, and are the least of several.
+/// These tests fail for slow-downs by a multiple, on any machine: times are stated in those of a fixed piece of
+/// arithmetic that is measured in turn with them, and the least of several counts.
 namespace shapemap {
 namespace {
 
@@ -25,7 +25,7 @@ constexpr bool kIsMeasurable = false;
 
 constexpr int kRepetitions = 9;
 
-/// Of this thread; other programs do not count.
+/// Returns the processor time of this thread, which does not include other programs.
 double cpu_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -38,7 +38,7 @@ double seconds_of(const std::function<void()>& work) {
   return cpu_seconds() - start;
 }
 
-/// What the library does most, but none of its code: angles, roots and votes all over a table.
+/// Computes angles, roots and votes all over a table, as the library does, but with none of its code.
 double yardstick() {
   std::vector<float> table(6400, 0.0F);
   double x = 0.3;
@@ -52,12 +52,12 @@ double yardstick() {
   return table[100] + x;
 }
 
-/// How many yardsticks long a piece of work is.
+/// Returns the time of a piece of work, in yardsticks.
 double length_of(const std::function<void()>& work) {
   double work_s = std::numeric_limits<double>::infinity();
   double yardstick_s = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kRepetitions; ++k) {
-    double used = 0.0;  // or the compiler leaves it out
+    double used = 0.0;  // keeps the compiler from leaving the work out
     yardstick_s = std::min(yardstick_s, seconds_of([&] { used = yardstick(); }));
     EXPECT_TRUE(std::isfinite(used));
     work_s = std::min(work_s, seconds_of(work));
@@ -76,8 +76,8 @@ class Speed : public testing::Test {
   const ScanView query_ = test::view_from(world_, {0.5, -0.3, 0.4}, test::half_circle(), 2);
 };
 
-// Each bound is two and a half times what was measured, which varies by 3 % from run to run. A change that is meant to
-// look at more may raise its bound.
+// Each bound is two and a half times the measured time, which varies by 3 % from run to run. A change that is meant to
+// do more work may raise its bound.
 
 TEST_F(Speed, OfAView) {
   const Scan scan = test::scan_of(world_, {}, test::half_circle());
@@ -113,11 +113,11 @@ TEST_F(Speed, OfRefinement) {
   EXPECT_LT(length_of(ten_times), 1.85);
 }
 
-TEST_F(Speed, OfAnAlignment) {
+TEST_F(Speed, OfAMatch) {
   EXPECT_LT(length_of([&] { match_scans(reference_, query_, {}); }), 9.7);
 }
 
-TEST_F(Speed, OfAnAlignmentOfDifferentPlaces) {
+TEST_F(Speed, OfAMatchOfDifferentPlaces) {
   const ScanView elsewhere = test::view_from(test::strange_place(1), {});
   EXPECT_LT(length_of([&] { match_scans(reference_, elsewhere, {}); }), 24.7);
 }

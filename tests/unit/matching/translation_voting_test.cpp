@@ -16,7 +16,7 @@ namespace {
 
 using test::IsNearPoint;
 
-/// A view that has what voting looks at, and nothing else.
+/// Returns a view that has only what voting uses.
 ScanView random_view(unsigned seed, std::size_t num_points, double half_size_m = 4.0) {
   std::mt19937 rng(seed);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -29,7 +29,7 @@ ScanView random_view(unsigned seed, std::size_t num_points, double half_size_m =
   return view;
 }
 
-/// The same points in another frame.
+/// Returns the same points in another frame.
 ScanView moved_view(const ScanView& view, const Pose2& b_from_a) {
   ScanView result;
   result.weights = view.weights;
@@ -39,7 +39,8 @@ ScanView moved_view(const ScanView& view, const Pose2& b_from_a) {
   return result;
 }
 
-/// Votes by all pairs, each spread over its cell and, a half and a quarter as much, the cells beside it.
+/// Counts the votes of all pairs by their definition: a vote goes to its cell, and with a half and a quarter of its
+/// weight to the cells beside it.
 class SlowVoting {
  public:
   SlowVoting(const ScanView& reference, const ScanView& query, double rotation_rad, double max_shift_m,
@@ -82,7 +83,7 @@ class SlowVoting {
   std::map<std::pair<int, int>, double> votes_;
 };
 
-TEST(TranslationVoting, PutsUpTheCellsWithMostVotesOfAllPairs) {
+TEST(TranslationVoting, ReturnsTheCellsWithMostVotesOfAllPairs) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     const ScanView reference = random_view(seed, 60);
     const ScanView query = random_view(100 + seed, 50);
@@ -174,7 +175,7 @@ TEST(TranslationVoting, HasNoVotesForFartherMotions) {
   }
 }
 
-/// The borders of the grid are where an index would go wrong first; the sanitizers watch.
+/// An index would go wrong first at the borders of the grid, which sanitizers report.
 TEST(TranslationVoting, StaysInsideItsGridForAllOptions) {
   const ScanView reference = random_view(7, 200, 8.0);
   const ScanView query = random_view(8, 200, 8.0);
@@ -193,7 +194,7 @@ TEST(TranslationVoting, StaysInsideItsGridForAllOptions) {
   }
 }
 
-TEST(TranslationVoting, OfNothingPutsUpNothing) {
+TEST(TranslationVoting, OfNothingReturnsNothing) {
   const ScanView nothing;
   const ScanView something = random_view(1, 20);
   EXPECT_TRUE(TranslationVoting(nothing, 2.0, {}).peaks(something, 0.0, 5).empty());

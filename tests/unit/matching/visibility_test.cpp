@@ -11,7 +11,7 @@
 namespace shapemap {
 namespace {
 
-/// A scan that has looked from the origin, without points of its own: beams of 45 degrees that end at `ranges_m`, on
+/// Returns a view without points whose sensor is at the origin: its beams are 45 degrees wide and end at `ranges_m`, on
 /// surfaces that face the sensor.
 ScanView seer(const std::vector<double>& ranges_m, double first_bearing_rad = 0.0) {
   ScanView view;
@@ -28,8 +28,7 @@ ScanView seer(const std::vector<double>& ranges_m, double first_bearing_rad = 0.
 
 ScanView all_around(double range_m) { return seer(std::vector<double>(8, range_m)); }
 
-/// Points that have been seen, without a look of their own. The direction of a wall is counterclockwise about the
-/// sensor that sees it.
+/// Adds a point to a view. The direction of a wall is counterclockwise about the sensor that sees it.
 void add_point(ScanView& view, const Point2& p_m, double direction_rad, double weight = 1.0,
                double cross_weight = 0.0) {
   view.points.push_back({p_m, direction_rad, 0});
@@ -41,7 +40,7 @@ void add_point(ScanView& view, const Point2& p_m, double direction_rad, double w
 Visibility of_point(const ScanView& seer, const Point2& p_m, double direction_rad, double slack = 1.0) {
   ScanView seen;
   add_point(seen, p_m, direction_rad);
-  return visibility(seer, seen, {}, {0.10, 25 * kDegree, 0.20}, slack);
+  return visibility(seer, seen, {}, {0.10, 25 * kDegree, 0.20}, {slack, 1});
 }
 
 TEST(Visibility, OfAPointOnTheSurfaceThatWasSeenThereAgrees) {
@@ -105,7 +104,7 @@ TEST(Visibility, TakesTheStrongestEvidenceOfSeveralSensors) {
 
 TEST(Visibility, AddsUpTheWeightsOfBothWays) {
   ScanView reference = all_around(2.0);
-  add_point(reference, {1.0, 0.0}, kPi / 2, 0.5, 0.25);  // in front of what the query saw
+  add_point(reference, {1.0, 0.0}, kPi / 2, 0.5, 0.25);  // lies in front of what the query saw
   ScanView query = all_around(2.0);
   add_point(query, {2.0, 0.0}, kPi / 2, 2.0, 0.75);
   add_point(query, {0.0, 2.0}, kPi, 4.0, 0.125);
@@ -129,8 +128,8 @@ TEST(Visibility, LooksAtPointsWhereThePosePutsThem) {
 TEST(Visibility, LooksAtEverySecondPointWhenAskedTo) {
   ScanView query;
   for (int k = 0; k < 10; ++k) add_point(query, {1.0, 0.0}, 0.0);
-  EXPECT_EQ(visibility(all_around(2.0), query, {}, {}, 1.0, 2).total(), 5.0);
-  EXPECT_EQ(visibility(all_around(2.0), query, {}, {}, 1.0, 1).total(), 10.0);
+  EXPECT_EQ(visibility(all_around(2.0), query, {}, {}, {1.0, 2}).total(), 5.0);
+  EXPECT_EQ(visibility(all_around(2.0), query, {}, {}, {1.0, 1}).total(), 10.0);
 }
 
 Visibility between(const test::World& world, const Pose2& a, const Pose2& b, const Pose2& candidate) {
@@ -171,7 +170,7 @@ TEST(Visibility, IsBestAtTheTruth) {
   }
 }
 
-/// Along a bare corridor nothing tells how far the robot went; a preference for standing still would be false.
+/// The distance along a bare corridor is unknown, and a preference for standing still would be false.
 TEST(Visibility, OfABareCorridorDoesNotRewardMovingLess) {
   test::Scanner scanner = test::half_circle();
   scanner.max_range_m = 8.0;

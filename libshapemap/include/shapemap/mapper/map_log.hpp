@@ -9,13 +9,13 @@
 
 namespace shapemap {
 
-/// The main job: a pose for every scan of `log` that can be matched to those before it, from ranges alone. All scans
-/// are pushed into a Mapper, or a PaperMapper, in their order; then the consistency of each with the map is judged. A
-/// scan that cannot be placed is told in the result. Same input and options give the same bits for any number of
-/// threads, whoever listens. When `events` ask to stop, what has come by then is made a map. The robust method asks
-/// `cache` for matches, and gives it those that it makes; it may be null. Throws ConfigError for bad options, and
-/// InputError for a scan that no sensor can have recorded (scan/plausibility.hpp); never throws for scans that do not
-/// match.
+/// Makes a map of a whole log: it finds a pose for every scan of `log` that can be matched to those before it, from
+/// ranges alone. All scans are pushed into a Mapper, or a PaperMapper, in their order; then the consistency of each
+/// with the map is judged. The result names the scans that cannot be placed, and why. The same input and options give
+/// the same bits for any number of threads, and any listener. When `events` ask to stop, the result is the map of the
+/// scans until then. The robust method asks `cache` for matches, and gives it those that it makes; it may be null.
+/// Throws ConfigError for bad options, and InputError for a scan that no sensor can have recorded
+/// (scan/plausibility.hpp); never throws for scans that do not match.
 MapResult map_log(const Log& log, const MappingOptions& options, MappingEvents& events, MatchCache* cache = nullptr);
 
 }  // namespace shapemap

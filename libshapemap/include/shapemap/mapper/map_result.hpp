@@ -15,58 +15,58 @@ namespace shapemap {
 
 inline constexpr std::size_t kNoReference = static_cast<std::size_t>(-1);
 
-/// What became of one position of the log, whether placed or not.
+/// The result for one scan of the log, whether placed or not.
 struct ScanResult {
   std::size_t scan_index = 0;
   double timestamp_s = 0.0;
-  std::size_t session = 0;  ///< the recording that it is from
-  int component = -1;       ///< index into MapResult::fragments; -1: no usable shape, in no fragment
+  std::size_t session = 0;  ///< number of the recording that the scan is from
+  int component = -1;       ///< index into MapResult::components; -1: the scan has no usable shape, and no component
   bool starts_component = false;
-  ScanMatch match;  ///< by the robust method, to the scans before it; meaningless for the first position
-  std::optional<PaperAlignment> paper;   ///< by the paper's method, where there was something to align it to
-  std::size_t reference = kNoReference;  ///< the position that it is to, where that is not the last keyframe before it
-  /// Loops hold this position where it is, even if that alignment was wrong.
+  ScanMatch match;  ///< match of the robust method to the scans before; meaningless for the first scan
+  std::optional<PaperAlignment> paper;   ///< alignment of the paper's method, where there was something to align to
+  std::size_t reference = kNoReference;  ///< the scan that `match` is to
+  /// Loops constrain the pose of this scan, so that it is right even if the match was wrong.
   bool loop_constrained = false;
   bool is_keyframe = true;
-  std::string reason;  ///< empty when aligned without doubt; else one line that says why not
+  std::string reason;  ///< one line that says why the match is in doubt; empty when it is not
 
-  /// What either method says of the scan. It was aligned unless there was nothing to align it to: at the start of a
-  /// log, or where the paper's method starts anew.
+  /// The following functions summarise the result of either method. A scan was aligned unless there was nothing to
+  /// align it to, as at the start of a session, or where the paper's method starts a component.
   bool was_aligned() const;
   bool is_without_shape() const;
   bool is_sure() const;
-  bool has_pose() const;  ///< of the scan in the frame of its reference
+  bool has_pose() const;  ///< whether ref_from_query() is a pose
   Pose2 ref_from_query() const;
   std::string status_text() const;
   const std::string& alignment_reason() const;
 };
 
-/// Seconds spent per stage, summed over threads where a stage is threaded.
+/// The seconds spent per stage, summed over threads where a stage is threaded.
 struct StageTimes {
   double shape_s = 0.0;
   double align_s = 0.0;
   double icp_s = 0.0;
   double decoupled_icp_s = 0.0;
-  double loops_s = 0.0;        ///< to know places again, and to solve for the map
-  double consistency_s = 0.0;  ///< to see how each scan goes with the rest
+  double loops_s = 0.0;        ///< loop detection and optimisation of the map
+  double consistency_s = 0.0;  ///< consistency of each scan with the map
 };
 
 struct MapResult {
-  std::vector<Component> components;  ///< in the order of the log
-  std::vector<ScanResult> scans;      ///< one per position of the log that was looked at
-  std::vector<ClosedLoop> loops;      ///< strongest first
-  int largest_component = -1;         ///< the fragment that makes the map; -1: none
+  std::vector<Component> components;  ///< components in the order of the log
+  std::vector<ScanResult> scans;      ///< one result per scan that was worked on
+  std::vector<ClosedLoop> loops;      ///< closed loops, strongest first
+  int largest_component = -1;         ///< index of the component that makes the map; -1: none
   StageTimes times;
-  bool interrupted = false;  ///< the observer asked to stop; the rest of the log was not looked at
+  bool interrupted = false;  ///< whether the observer asked to stop, so that the rest of the log was left out
 
-  /// Positions of the largest fragment; empty when there is none.
+  /// Returns the scans of the largest component; none when there is no component.
   const std::vector<PlacedScan>& placed() const;
 
-  /// One line that says why a position is not in the map; empty for one that is.
+  /// Returns one line that says why a scan is not in the map; empty for one that is.
   std::string why_not_in_map(const ScanResult& scan) const;
 };
 
-/// Returns the index of the first of the components with most scans; -1 where there is none.
+/// Returns the index of the first component with most scans; -1 where there is none.
 int largest_component(const std::vector<Component>& components);
 
 }  // namespace shapemap

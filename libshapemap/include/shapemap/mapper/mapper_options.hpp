@@ -13,8 +13,8 @@
 namespace shapemap {
 
 enum class Method {
-  kRobust,  ///< any heading and offset, little overlap, and a probability with each alignment
-  kPaper,   ///< "Robot Mapping for Rescue Robots"
+  kRobust,  ///< the method for any heading and offset and little overlap, which states a probability for each match
+  kPaper,   ///< the method of "Robot Mapping for Rescue Robots"
 };
 
 template <>
@@ -37,7 +37,7 @@ struct RunOptions {
 /// All options of map_log(), grouped by stage.
 struct MappingOptions {
   ReturnOptions returns;
-  DeskewOptions deskew;  ///< of straightened(), not of map_log()
+  DeskewOptions deskew;  ///< options of straightened(), which map_log() does not read
   PolylineOptions polylines;
   ShapeOptions shape;
   RobustOptions robust;
@@ -72,8 +72,8 @@ struct MappingOptions {
   }
 };
 
-/// Chooses the paper's method and turns every reading of the paper that was settled by measurement back to the literal
-/// one, that of its input included.
+/// Chooses the paper's method, and sets every interpretation of the paper that was chosen by measurement back to the
+/// literal one, also for its input.
 void make_strict_paper(MappingOptions& options);
 
 /// Throws ConfigError for the first option that is out of its limits.

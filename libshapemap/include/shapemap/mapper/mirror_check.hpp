@@ -8,19 +8,19 @@
 
 namespace shapemap {
 
-/// How often the robot turned as the map says, and how often the other way, by the headings that the log has.
+/// The turns of the robot in the map, compared with those of the headings that the log records.
 struct TurnComparison {
   std::size_t num_alike = 0;
   std::size_t num_opposite = 0;
 
-  /// Whether the scans must be mirrored: more turns are opposite than would be, with a probability of 1e-6, if the
-  /// recorded headings had nothing to do with the motion.
+  /// Returns whether the scans must be mirrored: if the recorded headings had nothing to do with the motion, so many
+  /// opposite turns would have a probability below 1e-6.
   bool is_mirrored() const;
 };
 
-/// Compares the turns between successive placed positions of `log` that are too large to be noise. Scans of a laser
-/// that is upside down, or counts its beams clockwise, make a map that is right but for being mirrored: nothing else
-/// tells.
+/// Compares the turns between successive placed scans of `log` that are too large to be noise. A laser that is upside
+/// down, or counts its beams clockwise, makes a map that is only mirrored, which nothing but recorded headings can
+/// show.
 TurnComparison compare_turns(const Log& log, const std::vector<PlacedScan>& placed);
 
 }  // namespace shapemap

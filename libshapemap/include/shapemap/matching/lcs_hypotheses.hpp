@@ -9,14 +9,15 @@
 
 namespace shapemap {
 
-/// Translations by the paper's own means: all segments of a longest common subsequence, each by its mean, and not only
-/// the best of them. Made once for a pair and used for every rotation.
+/// Proposes translations as the paper does: each segment of a longest common subsequence gives its mean translation,
+/// and not only the best segment is used. An object is made once for a pair of scans and serves every rotation.
 class LcsHypotheses {
  public:
-  /// Keeps references to both.
+  /// Copies what it needs of both views.
   LcsHypotheses(const ScanView& reference, const ScanView& query);
 
-  /// Translations of the query turned by `rotation_rad`, those of the longest segments first.
+  /// Returns at most `max_count` translations [m] of the query turned by `rotation_rad`, those of the longest segments
+  /// first.
   std::vector<Point2> translations(double rotation_rad, int max_count) const;
 
  private:

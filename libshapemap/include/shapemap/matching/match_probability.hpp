@@ -7,31 +7,32 @@
 #include "shapemap/core/numbers.hpp"
 #include "shapemap/matching/match_search.hpp"
 
-/// What an alignment is worth.
+/// These functions give the probability and the covariance of a match.
 namespace shapemap {
 
 double log_odds_of(double probability);
 double probability_of(double log_odds);
 
-/// Probability that `best` is right. `margin` is its score above that of the best other place.
+/// Returns the probability that `best` is right, for any pair of scans. `margin` is its score minus that of the best
+/// candidate at another place.
 double match_probability(const MatchCandidate& best, double margin);
 
-/// The same of two scans that follow each other, by what match_probability() says: it allows for scans of two different
-/// places, which neighbours are not. See insufficient_view().
+/// Returns the probability that a match of two successive scans is right, from match_probability(), which allows for
+/// scans of two different places, and insufficient_view().
 double odometry_probability(double match_probability, double insufficient_view);
 
-/// How far the one of two scans that sees less falls short of 0.45 of all directions (ScanView::seen_share). The less
-/// each sees, the likelier the two share nothing that tells where they are, and the true place is none of those that
-/// are found. What that is worth is known of lasers with 100 degrees of view and more.
+/// Returns how far the scan that sees less falls short of 0.45 of all directions (ScanView::seen_share). The less a
+/// scan sees, the likelier the two share no surfaces that fix the pose, and no candidate is the true pose. The weight
+/// of this number was fitted to lasers with a field of view of 100 degrees and more.
 double insufficient_view(const ScanView& a, const ScanView& b);
 
-/// The margin that stands for "there is no other place".
+/// This margin means that there is no candidate at another place.
 inline constexpr double kFullMargin = 20.0;
 
-/// The margin of the first of distinct hypotheses, best first.
+/// Returns the margin of the first of distinct candidates, which are ordered best first.
 double lead_of_first(const std::vector<MatchCandidate>& candidates);
 
-/// What a point tells of a pose by its line.
+/// The noise model of a point's distance from the line through its partner.
 struct LineNoise {
   double residual_m = 0.12;
   double tangent = 0.10;
@@ -49,13 +50,14 @@ struct LineNoise {
   }
 };
 
-/// Covariance of (x, y, theta) from the lines that hold the pose; a direction that none holds gets metres.
+/// Returns the covariance of (x, y, theta), in metres and radians, of a fit. A direction that no line constrains gets a
+/// deviation of metres.
 Eigen::Matrix3d pose_covariance(const LineFit& fit, const LineNoise& noise = {});
 
-/// Standard deviation in the direction in which a position is held worst.
+/// Returns the standard deviation of the position in the direction that is constrained least.
 double worst_deviation_m(const Eigen::Matrix3d& covariance);
 
-/// And in which it is held best: along a corridor, that across it.
+/// Returns the standard deviation of the position in the direction that is constrained most, as across a corridor.
 double best_deviation_m(const Eigen::Matrix3d& covariance);
 
 }  // namespace shapemap

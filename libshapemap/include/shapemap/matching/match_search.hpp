@@ -41,36 +41,37 @@ struct MatchSearchOptions {
   PointToLineOptions line;
 };
 
-/// A pose that the query scan may have, and how well the two scans then go together.
+/// A candidate is a pose that the query scan may have, with the evidence of the two scans at this pose.
 struct MatchCandidate {
   Pose2 ref_from_query;
-  double score = 0.0;  ///< visibility_score(), less for a poor fit
+  double score = 0.0;  ///< visibility_score(), minus a penalty for the residuals of the fit
   Visibility visibility;
   LineFit fit;
 };
 
-/// Distinct poses that `query` may have in the frame of `reference`, any heading and offset, best first. Empty when one
-/// of them has no points.
+/// Returns distinct poses that `query` may have in the frame of `reference`, with any heading and offset, best first.
+/// There are none when one of the scans has no points.
 std::vector<MatchCandidate> find_candidates(const ScanView& reference, const ScanView& query,
                                             const MatchSearchOptions& options);
 
-/// The same for a scan that most likely follows the other as `habit` says, with more effort: what is unusual scores
-/// less, and is less likely to be looked into.
+/// Does the same with more effort for a scan whose motion since the other has the density `prior`: unlikely motions
+/// score less, and are less likely to be refined.
 std::vector<MatchCandidate> find_usual_candidates(const ScanView& reference, const ScanView& query,
                                                   const MatchSearchOptions& options, const MotionPrior& prior);
 
-/// Refines a pose and judges it.
+/// Refines a pose by fit_to_lines(), and returns its evidence.
 MatchCandidate refined_candidate(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
                                  const MatchSearchOptions& options);
 
-/// Judges a pose as it is.
+/// Returns the evidence of a pose as it is.
 MatchCandidate candidate_at(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
                             const MatchSearchOptions& options);
 
-/// The best of `hypotheses`, one for each place; at most `count`.
+/// Returns at most `count` of `candidates`, best first, and only the best at each place.
 std::vector<MatchCandidate> best_distinct(std::vector<MatchCandidate> candidates, int count);
 
-/// Adds `pose` unless its place is known: a place twice would be its own rival, and leave no margin between the two.
+/// Adds `pose` unless `distinct` has its place, since a place that is there twice would leave no margin to the best
+/// other place.
 void add_if_new(const MatchCandidate& pose, std::vector<MatchCandidate>& distinct);
 
 }  // namespace shapemap

@@ -9,7 +9,7 @@
 
 namespace shapemap {
 
-/// Keeps matches in memory, and in another cache behind it where there is one.
+/// Keeps matches in memory, and passes them on to another cache where there is one.
 class MemoryMatchCache : public MatchCache {
  public:
   /// `next` may be null.

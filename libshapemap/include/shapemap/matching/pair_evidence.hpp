@@ -5,7 +5,7 @@
 
 namespace shapemap {
 
-/// Whether two scans at a pose show the same so well that one can replace the other.
+/// Returns whether two scans at this pose show the same surfaces so well that one can replace the other.
 bool shows_the_same(const MatchCandidate& pose);
 
 }  // namespace shapemap

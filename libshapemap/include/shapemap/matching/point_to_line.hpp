@@ -30,19 +30,21 @@ struct PointToLineOptions {
 
 struct LineFit {
   Pose2 ref_from_query;
-  /// About (x, y, theta), at the last iteration: sum of J^T J over the partners, for residuals of unit variance.
+  /// The information about (x, y, theta) at the last iteration: weighted sum of J^T J over the partners, for residuals
+  /// of unit variance.
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  int partners = 0;
-  double rms_m = 0.0;    ///< of the partners' distances from their lines
-  double lever_m = 0.0;  ///< root mean square of the partners' distances from the robot
+  int partners = 0;      ///< query points that have a partner in the reference
+  double rms_m = 0.0;    ///< root mean square of their distances from the partners' lines
+  double lever_m = 0.0;  ///< root mean square of their distances from the robot
 };
 
-/// Moves the query so that its points lie on the lines through their partners in the reference (Chen and Medioni,
-/// "Object modelling by registration of multiple range images", 1992). Partners are sought within a gate that narrows.
+/// Moves the query from `start` so that its points lie on the lines through their partners in the reference (Chen and
+/// Medioni, "Object modelling by registration of multiple range images", 1992). The gate for partners narrows from one
+/// iteration to the next.
 LineFit fit_to_lines(const ScanView& reference, const ScanView& query, const Pose2& start,
                      const PointToLineOptions& options);
 
-/// How the query fits at a pose as it is, by the gate of the last iteration.
+/// Returns the fit at a pose as it is, with the gate of the last iteration.
 LineFit fit_at(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
                const PointToLineOptions& options);
 

@@ -7,8 +7,8 @@
 
 namespace shapemap {
 
-/// Rotations under which surfaces of the two scans run the same way: peaks of the circular correlation of their
-/// tangent histograms, best first, at most `max_count`.
+/// Returns at most `max_count` rotations [rad] that make the surfaces of the two scans parallel, best first: they are
+/// the peaks of the circular correlation of the tangent histograms.
 std::vector<double> rotation_hypotheses(const TangentHistogram& reference, const TangentHistogram& query,
                                         int max_count);
 

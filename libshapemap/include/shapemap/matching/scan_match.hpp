@@ -13,14 +13,14 @@
 
 namespace shapemap {
 
-/// Whether a match can be trusted, and if not, why.
+/// The status says whether a match can be trusted, and if not, why.
 enum class MatchStatus {
   kOk,
   kNoShape,           ///< one of the two scans has too few shape points
   kNoCandidates,      ///< no pose brings similar surfaces together
   kTooLittleOverlap,  ///< the matched scans hardly see the same surfaces
   kAmbiguous,         ///< the best pose may well be wrong: others fit about as well, or it fits badly itself
-  kDegenerate,        ///< the pose is right but for a direction that the scans do not hold, as in a bare corridor
+  kDegenerate,        ///< the scans leave a direction of the pose unconstrained, as in a bare corridor
 };
 
 template <>
@@ -29,21 +29,21 @@ struct EnumNames<MatchStatus> {
       "ok", "no-shape", "no-correspondences", "too-little-overlap", "ambiguous", "degenerate"};
 };
 
-/// One of the poses that a scan may have.
+/// A candidate in the result of a match, as it is reported.
 struct RankedPose {
   Pose2 ref_from_query = kNoPose;
-  double score = 0.0;  ///< logarithm of odds, up to a constant that all poses of a pair share
+  double score = 0.0;  ///< log odds up to a constant that all poses of a pair share
 
-  /// Shares of the points of both scans, by what the other scan saw at their place; see Visibility.
-  double agree = 0.0;    ///< they lie on what it saw there
-  double crossed = 0.0;  ///< its beams would have had to pass through them
+  /// The following are shares of the points of both scans, by what the other scan saw there; see Visibility.
+  double agree = 0.0;    ///< the other scan saw the same surface
+  double crossed = 0.0;  ///< a beam of the other scan passed through the point
   double hidden = 0.0;
   double unclear = 0.0;
   double outside = 0.0;
-  double cross_agree = 0.0;  ///< as `agree`, of the points across the direction that most of a scan runs in
+  double cross_agree = 0.0;  ///< as `agree`, of the points on surfaces across the main direction of a scan
 
-  double rms_m = 0.0;  ///< of the distances of the points from the lines through their partners
-  int partners = 0;    ///< query points that have one
+  double rms_m = 0.0;  ///< root mean square of the distances of points from the lines through their partners
+  int partners = 0;    ///< query points that have a partner
 };
 
 /// The answer of match_scans(). `ref_from_query` takes the query scan to the frame of the reference.
@@ -54,7 +54,7 @@ struct ScanMatch {
   std::vector<RankedPose> ranked;  ///< the pose that was taken, then the others, best first
   /// The probability that the pose is right; NaN without one.
   double probability = std::numeric_limits<double>::quiet_NaN();
-  /// The covariance of the pose, in metres and radians, which is large in directions that the scans do not hold.
+  /// The covariance of (x, y, theta), in metres and radians, is large in directions that the scans do not constrain.
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
   bool ok() const { return status == MatchStatus::kOk; }

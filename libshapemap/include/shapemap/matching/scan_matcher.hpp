@@ -6,7 +6,7 @@
 #include "shapemap/matching/match_search.hpp"
 #include "shapemap/matching/scan_match.hpp"
 
-/// Alignment of two scans with any heading and offset between them, which says how sure it is.
+/// Two scans are matched with any heading and offset between them, and the match has a probability and a covariance.
 namespace shapemap {
 
 struct ConfidenceOptions {
@@ -30,15 +30,15 @@ struct MatcherOptions {
   ConfidenceOptions confidence;
 };
 
-/// The pose of `query` in the frame of `reference`, from shape alone. Never throws for scans that do not match: see
-/// ScanMatch::status.
+/// Finds the pose of `query` in the frame of `reference` from the two scans alone. It never throws for scans that do
+/// not match: see ScanMatch::status.
 ScanMatch match_scans(const ScanView& reference, const ScanView& query, const MatcherOptions& options);
 
-/// What is told of a hypothesis.
+/// Returns a candidate as it is reported.
 RankedPose ranked_pose(const MatchCandidate& pose);
 
-/// The verdict on `hypotheses`, in any order, of which number `chosen` is taken; `margin` is what it is better by than
-/// any other place. What is known better than by the two scans is the `probability`.
+/// Returns the match that takes candidate number `chosen`; `candidates` may have any order. `margin` is its score minus
+/// that of the best other place. A given `probability` replaces that of the two scans alone.
 ScanMatch judged(const std::vector<MatchCandidate>& candidates, std::size_t chosen, double margin,
                  const ConfidenceOptions& options, std::optional<double> probability = {});
 

@@ -27,22 +27,23 @@ struct VotingOptions {
   }
 };
 
-/// The longest motion that is looked for between two scans.
+/// Returns the longest motion [m], along x or y, that is searched between two scans.
 double max_shift_m(const ScanView& reference, const ScanView& query, const VotingOptions& options);
 
-/// Where pairs of points put the query: each pair with like tangents votes for the translation that brings its points
-/// together (a Hough transform, as in Ballard 1981). Made once for a reference and used for every rotation of a query.
+/// Proposes translations by votes: each pair of points with similar tangents votes for the translation that brings its
+/// points together (a Hough transform, as in Ballard 1981). An object is made once for a reference and serves every
+/// rotation of a query.
 class TranslationVoting {
  public:
   /// Keeps a reference to `reference`.
   TranslationVoting(const ScanView& reference, double max_shift_m, const VotingOptions& options);
 
-  /// Translations of `query` turned by `rotation_rad` with most votes, best first, two cells or more apart. Along a
-  /// wall the votes make a ridge rather than a peak, and all along it are put up.
+  /// Returns the translations [m] with most votes of `query` turned by `rotation_rad`, best first, two cells or more
+  /// apart. Along a wall the votes form a ridge rather than a peak, and translations all along it are returned.
   std::vector<Point2> peaks(const ScanView& query, double rotation_rad, int max_count) const;
 
  private:
-  using Votes = std::vector<float>;  ///< square, row by row
+  using Votes = std::vector<float>;  ///< a square of cells, row by row
 
   Votes cast(const ScanView& query, double rotation_rad) const;
   void cast_from(const Point2& turned_m, double weight, double from_rad, double to_rad, Votes& votes) const;
@@ -51,8 +52,8 @@ class TranslationVoting {
   const ScanView& reference_;
   VotingOptions options_;
   double max_shift_m_;
-  std::size_t width_;               ///< cells along a side, with a border of one that no vote falls into
-  std::vector<std::size_t> order_;  ///< of the reference's points by tangent
+  std::size_t width_;               ///< cells along a side, with a border of one cell that gets no votes
+  std::vector<std::size_t> order_;  ///< the reference's points in the order of their tangents
   std::vector<double> tangents_rad_;
 };
 

@@ -6,8 +6,8 @@
 #include "shapemap/core/options.hpp"
 #include "shapemap/shape/scan_view.hpp"
 
-/// Whether two scans can have been taken at a given relative pose, judged by what each saw of the other's surfaces and
-/// of the space in front of them.
+/// Visibility is the evidence for a relative pose of two scans: what each saw of the other's surfaces, and of the space
+/// in front of them.
 namespace shapemap {
 
 struct VisibilityOptions {
@@ -26,28 +26,34 @@ struct VisibilityOptions {
   }
 };
 
-/// What became of the points of both scans, each looked at from the other scan's sensors: sums of their weights. Points
-/// behind a surface, or beyond the field of view, speak neither for a pose nor against it.
+/// Sums of the weights of the points of both scans, by how the sensors of the other scan saw each of them. Points
+/// behind a surface, or beyond the field of view, are no evidence.
 struct Visibility {
   double agree = 0.0;        ///< on the surface that the other scan saw there
-  double crossed = 0.0;      ///< in the way of one of the other scan's beams
+  double crossed = 0.0;      ///< between the other scan's sensor and what its beam hit
   double hidden = 0.0;       ///< behind a surface that the other scan saw
-  double unclear = 0.0;      ///< near such a surface but not like it, or where there was no return
+  double unclear = 0.0;      ///< near such a surface but not on it, or where a beam had no return
   double outside = 0.0;      ///< outside the field of view
   double cross_agree = 0.0;  ///< as `agree`, with ScanView::cross_weights
-  double cross_total = 0.0;
+  double cross_total = 0.0;  ///< as total(), with ScanView::cross_weights
 
   double total() const { return agree + crossed + hidden + unclear + outside; }
   Visibility& operator+=(const Visibility& other);
 };
 
-/// Looks at every `stride`-th point of each scan. `slack` widens the distances, for poses that are not refined yet.
-Visibility visibility(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
-                      const VisibilityOptions& options, double slack = 1.0, std::size_t stride = 1);
+/// How coarse a comparison of two scans is.
+struct VisibilityPrecision {
+  double slack = 1.0;      ///< factor on the distances of VisibilityOptions, larger for poses that are not refined
+  std::size_t stride = 1;  ///< every such point of each scan is compared
+};
 
-/// How well the scans go together, as the logarithm of odds up to a constant: grows with the share of points that agree
-/// and falls with the share that beams would have had to pass through. Shares, and not sums, so that moving less, which
-/// lets more points be seen by both, is no merit of its own.
+/// Compares two scans at a relative pose.
+Visibility visibility(const ScanView& reference, const ScanView& query, const Pose2& ref_from_query,
+                      const VisibilityOptions& options, const VisibilityPrecision& precision = {});
+
+/// Returns the log odds, up to a constant, that the pose is right: they grow with the share of points that agree and
+/// fall with the share that is crossed. Shares rather than sums are used, because a shorter motion lets both scans see
+/// more points, which is no evidence for it.
 double visibility_score(const Visibility& visibility);
 
 }  // namespace shapemap
