@@ -2,13 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "shapemap/mapper/map_result.hpp"
 #include "shapemap/scan/scan.hpp"
 
 namespace shapemap {
 
-/// How often the robot turned as the map says, and how often the other way, by the headings that the log has.
+/// How often the robot turned as the map says, and how often the other way, by the headings that are recorded with the
+/// scans.
 struct TurnComparison {
   std::size_t num_alike = 0;
   std::size_t num_opposite = 0;
@@ -18,9 +20,11 @@ struct TurnComparison {
   bool is_mirrored() const;
 };
 
-/// Compares the turns between successive placed positions of `log` that are too large to be noise. Scans of a laser
+/// Compares the turns between successive placed scans of one session that are too large to be noise;
+/// `sessions` holds the session of each of `scans`. Scans of a laser
 /// that is upside down, or counts its beams clockwise, make a map that is right but for being mirrored: nothing else
 /// tells.
-TurnComparison compare_turns(const Log& log, const std::vector<PlacedScan>& placed);
+TurnComparison compare_turns(const std::vector<Scan>& scans, const std::vector<std::size_t>& sessions,
+                             const std::vector<PlacedScan>& placed);
 
 }  // namespace shapemap
