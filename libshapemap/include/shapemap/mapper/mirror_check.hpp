@@ -20,10 +20,9 @@ struct TurnComparison {
   bool is_mirrored() const;
 };
 
-/// Compares the turns between successive placed scans of one session that are too large to be noise;
-/// `sessions` holds the session of each of `scans`. Scans of a laser
-/// that is upside down, or counts its beams clockwise, make a map that is right but for being mirrored: nothing else
-/// tells.
+/// Compares the turns between successive placed scans of one session that are too large to be noise; `sessions` holds
+/// the session of each of `scans`. Scans of a laser that is upside down, or counts its beams clockwise, make a map that
+/// is right but for being mirrored: nothing else tells.
 TurnComparison compare_turns(const std::vector<Scan>& scans, const std::vector<std::size_t>& sessions,
                              const std::vector<PlacedScan>& placed);
 
