@@ -87,7 +87,8 @@ void write_outputs(const Arguments& arguments, const Log& log, const std::vector
   cli::OutputSet outputs(arguments.force);
   if (!arguments.map_path.empty()) {
     cli::set_interrupt_policy(cli::OnInterrupt::kExitAtOnce);  // nothing is open yet
-    const OccupancyGrid map = build_occupancy_grid(log, placed, arguments.settings.returns, arguments.settings.grid);
+    const OccupancyGrid map =
+        build_occupancy_grid(log.scans, placed, arguments.settings.returns, arguments.settings.grid);
     cli::set_interrupt_policy(cli::OnInterrupt::kFinishStep);
     cli::add_map(arguments.map_path, map, nullptr, outputs);
     if (map.num_outside > 0 && !arguments.quiet) {

@@ -81,7 +81,7 @@ void add_component_files(const MapArguments& arguments, const LogSet& logs, cons
     const std::vector<PlacedScan>& placed = result.components[i].scans;
     if (static_cast<int>(i) == result.largest_component || placed.empty()) continue;
     const std::string base = (folder / ("fragment_" + std::to_string(i))).string();
-    const OccupancyGrid map = build_occupancy_grid(logs.log, placed, settings.mapping.returns, settings.grid);
+    const OccupancyGrid map = build_occupancy_grid(logs.log.scans, placed, settings.mapping.returns, settings.grid);
     drawn.push_back({static_cast<int>(i), map.num_returns, map.num_outside});
     add_map(note(base + ".png"), map, settings.drawing.draw_path ? &placed : nullptr, outputs);
     note(base + ".yaml");

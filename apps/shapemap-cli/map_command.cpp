@@ -49,7 +49,7 @@ MapRun map_with_progress(const LogSet& logs, const MapArguments& arguments, Mapp
   warnings.insert(warnings.end(), observer.warnings().begin(), observer.warnings().end());
   costs.milestones = observer.milestones();
   if (arguments.settings.walls.align_walls) {
-    run.notes.walls = align_walls(logs.log, arguments.settings.mapping.returns, result.components);
+    run.notes.walls = align_walls(logs.log.scans, arguments.settings.mapping.returns, result.components);
   }
   return run;
 }

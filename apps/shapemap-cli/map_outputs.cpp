@@ -86,7 +86,7 @@ std::vector<DrawnComponent> prepare_outputs(const MapArguments& arguments, const
                                             OutputSet& outputs) {
   const std::vector<PlacedScan>& placed = result.placed();
   const MapSettings& settings = arguments.settings;
-  const OccupancyGrid map = build_occupancy_grid(logs.log, placed, settings.mapping.returns, settings.grid);
+  const OccupancyGrid map = build_occupancy_grid(logs.log.scans, placed, settings.mapping.returns, settings.grid);
   std::vector<DrawnComponent> drawn{{result.largest_component, map.num_returns, map.num_outside}};
   add_map(arguments.map_path, map, settings.drawing.draw_path ? &placed : nullptr, outputs);
   const auto for_each = [&](const std::string& path, const auto& add) {

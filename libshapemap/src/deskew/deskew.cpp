@@ -54,8 +54,8 @@ struct Task {
 
 class SessionDeskew {
  public:
-  SessionDeskew(const Task& task, const Log& log, const LogPart& part)
-      : log_(log),
+  SessionDeskew(const Task& task, const LogPart& part, std::vector<Scan>& scans)
+      : scans_(scans),
         part_(part),
         returns_(task.returns),
         options_(task.options),
@@ -63,12 +63,12 @@ class SessionDeskew {
         execution_(task.execution),
         observer_(task.execution.observer) {}
 
-  SweepVerdict straighten(std::vector<Scan>& scans) {
-    verdict_.period_s = usual_period_s(log_, part_.first, part_.last);
+  SweepVerdict straighten() {
+    verdict_.period_s = usual_period_s(scans_, part_.first, part_.last);
     if (!(verdict_.period_s >= kShortestPeriod_s && verdict_.period_s <= kLongestPeriod_s)) return verdict_;
-    const double told_s = told_sweep_time_s(log_, part_.first, part_.last);
+    const double told_s = told_sweep_time_s(scans_, part_.first, part_.last);
     const std::vector<SweepRun> runs =
-        sweep_runs(log_, part_.first, part_.last, verdict_.period_s, is_possible(told_s));
+        sweep_runs(scans_, part_.first, part_.last, verdict_.period_s, is_possible(told_s));
     if (told_s != 0.0 && !is_possible(told_s)) {
       observer_.on_warning("the log says that a sweep takes " + seconds_text(told_s) + ", but sweeps are " +
                            seconds_text(turn_s()) + " apart; that is not used");
@@ -78,7 +78,7 @@ class SessionDeskew {
     verdict_.straightened = true;
     verdict_.sweep_time_s = timing.sweep_time_s;
     verdict_.told = timing.told;
-    for (const SweepRun& run : runs) straighten_run(run, timing, scans);
+    for (const SweepRun& run : runs) straighten_run(run, timing);
     verdict_.text = "sweeps of " + seconds_text(std::abs(timing.sweep_time_s)) + " straightened";
     if (verdict_.num_judged > 0) {
       std::ostringstream share;
@@ -102,7 +102,7 @@ class SessionDeskew {
     if (options_.sweep_time_s != 0.0) return {options_.sweep_time_s, false};
     std::vector<BeamTiming> candidates;
     if (is_possible(told_s)) candidates.push_back({told_s, true});
-    const double round_s = sweep_time_of_rate_s(log_, part_.first, part_.last, turn_s());
+    const double round_s = sweep_time_of_rate_s(scans_, part_.first, part_.last, turn_s());
     if (round_s > 0.0) {
       candidates.push_back({round_s, false});
       for (const double share : kShares) candidates.push_back({share * round_s, false});
@@ -110,7 +110,7 @@ class SessionDeskew {
     }
     if (candidates.empty() || runs.empty()) return {};
     if (options_.mode == Deskew::kOn) return candidates.front();
-    const SweepRecording recording{log_, runs, verdict_.period_s, returns_};
+    const SweepRecording recording{scans_, runs, verdict_.period_s, returns_};
     const BeamTiming best = best_timing(recording, candidates, execution_, verdict_);
     if (candidates.front().told && !best.told) {
       observer_.on_warning("by what the log says, a sweep takes " + seconds_text(told_s) + ", but scans go together " +
@@ -120,8 +120,8 @@ class SessionDeskew {
     return best;
   }
 
-  void straighten_run(const SweepRun& run, const BeamTiming& timing, std::vector<Scan>& scans) {
-    const std::vector<TimedSweep> sweeps = timed_sweeps(log_, run, timing, returns_, kPoints);
+  void straighten_run(const SweepRun& run, const BeamTiming& timing) {
+    const std::vector<TimedSweep> sweeps = timed_sweeps(scans_, run, timing, returns_, kPoints);
     const SweepMotion motion = sweep_motion(sweeps, verdict_.period_s, execution_.threads, [&](std::size_t done) {
       observer_.on_progress(run.first - part_.first + done, part_.last - part_.first);
       return observer_.keep_going();
@@ -134,7 +134,7 @@ class SessionDeskew {
         parts[i].num_left = 1;
         return;
       }
-      straighten_scan(sweeps[i].stamp_s, motion.trajectory, timing, scans[run.first + i], parts[i]);
+      straighten_scan(sweeps[i].stamp_s, motion.trajectory, timing, scans_[run.first + i], parts[i]);
     });
     for (const SweepVerdict& part : parts) {
       verdict_.num_sweeps += part.num_sweeps;
@@ -163,7 +163,7 @@ class SessionDeskew {
     verdict.num_sweeps = 1;
   }
 
-  const Log& log_;
+  std::vector<Scan>& scans_;  ///< those of all sessions
   LogPart part_;
   const ReturnOptions& returns_;
   const DeskewOptions& options_;
@@ -183,7 +183,7 @@ StraightenedLog straightened(Log log, const ReturnOptions& returns, const Deskew
   for (const LogPart& part : parts_of(result.log)) {
     result.verdicts.emplace_back();
     if (options.mode == Deskew::kOff) continue;
-    result.verdicts.back() = SessionDeskew(task, result.log, part).straighten(result.log.scans);
+    result.verdicts.back() = SessionDeskew(task, part, result.log.scans).straighten();
   }
   return result;
 }

@@ -54,10 +54,10 @@ double turned_rad(const Scan& scan) {
 
 }  // namespace
 
-double usual_period_s(const Log& log, std::size_t first, std::size_t last) {
+double usual_period_s(const std::vector<Scan>& scans, std::size_t first, std::size_t last) {
   std::vector<double> steps_s;
   for (std::size_t i = first + 1; i < last; ++i) {
-    const double step_s = log.scans[i].timestamp_s - log.scans[i - 1].timestamp_s;
+    const double step_s = scans[i].timestamp_s - scans[i - 1].timestamp_s;
     if (!(step_s > 0.0) || !std::isfinite(step_s)) continue;
     steps_s.push_back(step_s);
   }
@@ -66,14 +66,14 @@ double usual_period_s(const Log& log, std::size_t first, std::size_t last) {
   return median_of(std::move(steps_s));
 }
 
-std::vector<SweepRun> sweep_runs(const Log& log, std::size_t first, std::size_t last, double period_s,
+std::vector<SweepRun> sweep_runs(const std::vector<Scan>& scans, std::size_t first, std::size_t last, double period_s,
                                  bool goes_by_beam_times) {
-  const auto is_odd = [&](std::size_t i) { return goes_by_beam_times && has_odd_times(log.scans[i], period_s); };
+  const auto is_odd = [&](std::size_t i) { return goes_by_beam_times && has_odd_times(scans[i], period_s); };
   std::vector<SweepRun> runs;
   std::size_t start = first;
   for (std::size_t i = first + 1; i <= last; ++i) {
     if (i < last && !is_odd(i) && !is_odd(i - 1)) {
-      const double step_s = log.scans[i].timestamp_s - log.scans[i - 1].timestamp_s;
+      const double step_s = scans[i].timestamp_s - scans[i - 1].timestamp_s;
       if (step_s > 0.0 && step_s <= kLongestGap * period_s) continue;
     }
     if (i - start >= kLeastSweeps) runs.push_back({start, i});
@@ -89,14 +89,14 @@ double BeamTiming::beam_s(const Sweep& sweep, std::size_t beam) const {
   return sweep_time_s > 0.0 ? share * sweep_time_s : (share - 1.0) * sweep_time_s;
 }
 
-std::vector<TimedSweep> timed_sweeps(const Log& log, const SweepRun& run, const BeamTiming& timing,
+std::vector<TimedSweep> timed_sweeps(const std::vector<Scan>& scans, const SweepRun& run, const BeamTiming& timing,
                                      const ReturnOptions& returns, std::size_t max_points) {
   std::vector<TimedSweep> sweeps;
   sweeps.reserve(run.last - run.first);
   for (std::size_t i = run.first; i < run.last; ++i) {
-    const Scan& scan = log.scans[i];
+    const Scan& scan = scans[i];
     TimedSweep sweep;
-    sweep.stamp_s = scan.timestamp_s - log.scans[run.first].timestamp_s;
+    sweep.stamp_s = scan.timestamp_s - scans[run.first].timestamp_s;
     sweep.first_s = sweep.stamp_s;
     sweep.last_s = sweep.stamp_s;
     std::vector<double> ranges_m;
@@ -114,10 +114,10 @@ std::vector<TimedSweep> timed_sweeps(const Log& log, const SweepRun& run, const 
   return sweeps;
 }
 
-double told_sweep_time_s(const Log& log, std::size_t first, std::size_t last) {
+double told_sweep_time_s(const std::vector<Scan>& scans, std::size_t first, std::size_t last) {
   std::vector<double> times_s;
   for (std::size_t i = first; i < last; ++i) {
-    for (const Sweep& sweep : log.scans[i].sweeps) {
+    for (const Sweep& sweep : scans[i].sweeps) {
       const std::size_t num = sweep.ranges_m.size();
       if (num > 1) times_s.push_back(sweep.beam_time_s(num - 1) - sweep.beam_time_s(0));
     }
@@ -125,11 +125,11 @@ double told_sweep_time_s(const Log& log, std::size_t first, std::size_t last) {
   return median_of(std::move(times_s));
 }
 
-double sweep_time_of_rate_s(const Log& log, std::size_t first, std::size_t last, double period_s) {
+double sweep_time_of_rate_s(const std::vector<Scan>& scans, std::size_t first, std::size_t last, double period_s) {
   std::vector<double> seen_rad;
   for (std::size_t i = first; i < last; ++i) {
     std::set<std::string> labels;
-    for (const Sweep& sweep : log.scans[i].sweeps) {
+    for (const Sweep& sweep : scans[i].sweeps) {
       if (!labels.insert(sweep.sensor_label).second) return 0.0;
       const std::size_t num = sweep.ranges_m.size();
       if (num < 2) continue;

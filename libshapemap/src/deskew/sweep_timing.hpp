@@ -17,11 +17,11 @@ struct SweepRun {
 };
 
 /// Returns the usual time from one scan to the next, or 0 where the stamps do not tell it.
-double usual_period_s(const Log& log, std::size_t first, std::size_t last);
+double usual_period_s(const std::vector<Scan>& scans, std::size_t first, std::size_t last);
 
 /// Returns the runs of [first, last) that are long enough to estimate a motion. Where the times of beams are used,
 /// sweeps with beams far from their stamps are in no run.
-std::vector<SweepRun> sweep_runs(const Log& log, std::size_t first, std::size_t last, double period_s,
+std::vector<SweepRun> sweep_runs(const std::vector<Scan>& scans, std::size_t first, std::size_t last, double period_s,
                                  bool goes_by_beam_times);
 
 /// The beams of a sweep were sent at these times.
@@ -35,14 +35,14 @@ struct BeamTiming {
 
 /// Returns the scans of `run` with times counted from the stamp of its first scan, and about `max_points` points of
 /// each.
-std::vector<TimedSweep> timed_sweeps(const Log& log, const SweepRun& run, const BeamTiming& timing,
+std::vector<TimedSweep> timed_sweeps(const std::vector<Scan>& scans, const SweepRun& run, const BeamTiming& timing,
                                      const ReturnOptions& returns, std::size_t max_points);
 
 /// Returns the sweep time of [first, last) that the log states, or 0 where it states none.
-double told_sweep_time_s(const Log& log, std::size_t first, std::size_t last);
+double told_sweep_time_s(const std::vector<Scan>& scans, std::size_t first, std::size_t last);
 
 /// Returns the sweep time of a sensor that goes round once a period, or 0 where a scan has several sweeps of the same
 /// sensor, which were not taken at the same time.
-double sweep_time_of_rate_s(const Log& log, std::size_t first, std::size_t last, double period_s);
+double sweep_time_of_rate_s(const std::vector<Scan>& scans, std::size_t first, std::size_t last, double period_s);
 
 }  // namespace shapemap

@@ -45,7 +45,7 @@ struct Trial {
 };
 
 Trial tried(const SweepRecording& recording, const SweepRun& stretch, const BeamTiming& timing) {
-  const std::vector<TimedSweep> sweeps = timed_sweeps(recording.log, stretch, timing, recording.returns, kPoints);
+  const std::vector<TimedSweep> sweeps = timed_sweeps(recording.scans, stretch, timing, recording.returns, kPoints);
   const ShortMotion motion = short_motion(sweeps, recording.period_s);
   Trial trial;
   trial.misfit_m = motion.misfit_m;

@@ -12,7 +12,7 @@ namespace shapemap {
 
 /// Timings are tried on these sweeps of one session.
 struct SweepRecording {
-  const Log& log;
+  const std::vector<Scan>& scans;
   const std::vector<SweepRun>& runs;
   double period_s;
   const ReturnOptions& returns;

@@ -24,13 +24,14 @@ constexpr int kMarginCells = 4;           // so that walls at the rim stay visib
 constexpr double kMaxCells = 400e6;       // one byte each here, up to four in a coloured picture
 constexpr double kMaxCellsPerSide = 1e6;  // readers of pictures, including OpenCV, refuse wider ones
 
-std::vector<SeenRays> seen_rays(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns) {
+std::vector<SeenRays> seen_rays(const std::vector<Scan>& scans, const std::vector<PlacedScan>& placed,
+                                const ReturnOptions& returns) {
   const std::vector<std::size_t> starts = starts_of_visits(placed);
   std::vector<SeenRays> seen;
   std::uint32_t visit = 0;
   for (std::size_t i = 0; i < placed.size(); ++i) {
     if (starts[visit] == i) ++visit;
-    for (Rays& rays : rays_of(log, placed[i], returns)) {
+    for (Rays& rays : rays_of(scans, placed[i], returns)) {
       seen.push_back({std::move(rays), visit, placed[i].consistency.contradicts_map});
     }
   }
@@ -201,12 +202,12 @@ void draw_hits(Canvas& canvas, const std::vector<SeenRays>& seen, Contradicting 
 
 /// Calls `visit(from, end)` for each beam that hit nothing, of scans that are consistent with the rest of the map.
 template <class Visit>
-void for_each_open_ray(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns,
-                       const OccupancyGridOptions& options, const Visit& visit) {
+void for_each_open_ray(const std::vector<Scan>& scans, const std::vector<PlacedScan>& placed,
+                       const ReturnOptions& returns, const OccupancyGridOptions& options, const Visit& visit) {
   if (!(options.clear_no_return_m > 0.0)) return;
   for (const PlacedScan& place : placed) {
     if (place.consistency.contradicts_map && options.contradicting == Contradicting::kFillGaps) continue;
-    for (const OpenRays& rays : open_rays_of(log, place, returns, options.clear_no_return_m)) {
+    for (const OpenRays& rays : open_rays_of(scans, place, returns, options.clear_no_return_m)) {
       for (const Point2& end_m : rays.ends_m) visit(rays.from_m, end_m);
     }
   }
@@ -250,16 +251,16 @@ Eigen::Vector2i OccupancyGrid::pixel_at(const Point2& p_in_map_m) const {
   return {static_cast<int>(std::floor(cell.x())), height_cells - 1 - static_cast<int>(std::floor(cell.y()))};
 }
 
-OccupancyGrid build_occupancy_grid(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns,
-                                   const OccupancyGridOptions& options) {
+OccupancyGrid build_occupancy_grid(const std::vector<Scan>& scans, const std::vector<PlacedScan>& placed,
+                                   const ReturnOptions& returns, const OccupancyGridOptions& options) {
   validate(options);
   if (placed.empty()) throw OutputError("no position has a pose, so there is no map to draw");
   const double resolution_m = options.resolution_m;
-  const std::vector<SeenRays> seen = seen_rays(log, placed, returns);
+  const std::vector<SeenRays> seen = seen_rays(scans, placed, returns);
   const Box all = box_of_all(seen, placed);
   Box shown = options.draw_all ? all : certain_box(seen, placed, all);
   Box reached = shown;
-  for_each_open_ray(log, placed, returns, options, [&](const Point2& from_m, const Point2& end_m) {
+  for_each_open_ray(scans, placed, returns, options, [&](const Point2& from_m, const Point2& end_m) {
     shown.include(from_m);
     reached.include(from_m);
     reached.include(end_m);
@@ -271,7 +272,7 @@ OccupancyGrid build_occupancy_grid(const Log& log, const std::vector<PlacedScan>
   draw_hits(canvas, seen, options.contradicting);
   if (options.clear_no_return_m > 0.0) {
     const GridBefore before(canvas.grid());
-    for_each_open_ray(log, placed, returns, options, [&](const Point2& from_m, const Point2& end_m) {
+    for_each_open_ray(scans, placed, returns, options, [&](const Point2& from_m, const Point2& end_m) {
       canvas.fill_open(before, canvas.cell_of(from_m), canvas.cell_of(end_m),
                        [&](const Eigen::Vector2i& cell) { shown.include(canvas.middle_of_m(cell)); });
     });

@@ -9,8 +9,8 @@ namespace {
 
 /// Calls `visit(sweep, map_from_sweep)` for each sweep of the scan.
 template <class Visit>
-void for_each_sweep(const Log& log, const PlacedScan& place, const Visit& visit) {
-  const std::vector<Sweep>& sweeps = log.scans.at(place.scan_index).sweeps;
+void for_each_sweep(const std::vector<Scan>& scans, const PlacedScan& place, const Visit& visit) {
+  const std::vector<Sweep>& sweeps = scans.at(place.scan_index).sweeps;
   for (std::size_t i = 0; i < sweeps.size(); ++i) {
     visit(sweeps[i], place.map_from_robot * place.robot_from_sweep.at(i));
   }
@@ -18,9 +18,9 @@ void for_each_sweep(const Log& log, const PlacedScan& place, const Visit& visit)
 
 }  // namespace
 
-std::vector<Rays> rays_of(const Log& log, const PlacedScan& place, const ReturnOptions& options) {
+std::vector<Rays> rays_of(const std::vector<Scan>& scans, const PlacedScan& place, const ReturnOptions& options) {
   std::vector<Rays> all;
-  for_each_sweep(log, place, [&](const Sweep& sweep, const Pose2& map_from_sweep) {
+  for_each_sweep(scans, place, [&](const Sweep& sweep, const Pose2& map_from_sweep) {
     const std::vector<Return> returns = returns_in_robot(sweep, options);
     if (returns.empty()) return;
     Rays rays;
@@ -33,10 +33,10 @@ std::vector<Rays> rays_of(const Log& log, const PlacedScan& place, const ReturnO
   return all;
 }
 
-std::vector<OpenRays> open_rays_of(const Log& log, const PlacedScan& place, const ReturnOptions& options,
-                                   double length_m) {
+std::vector<OpenRays> open_rays_of(const std::vector<Scan>& scans, const PlacedScan& place,
+                                   const ReturnOptions& options, double length_m) {
   std::vector<OpenRays> all;
-  for_each_sweep(log, place, [&](const Sweep& sweep, const Pose2& map_from_sweep) {
+  for_each_sweep(scans, place, [&](const Sweep& sweep, const Pose2& map_from_sweep) {
     OpenRays rays;
     for (const Point2& end_in_robot_m : open_ends_in_robot(sweep, options, length_m)) {
       rays.ends_m.push_back(map_from_sweep * end_in_robot_m);

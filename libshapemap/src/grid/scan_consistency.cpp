@@ -28,9 +28,9 @@ enum class BeamFate { kUnknown, kAgree, kThrough, kInFree };
 
 class Judge {
  public:
-  Judge(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns,
+  Judge(const std::vector<Scan>& scans, const std::vector<PlacedScan>& placed, const ReturnOptions& returns,
         const ConsistencyOptions& options)
-      : log_(log),
+      : scans_(scans),
         placed_(placed),
         returns_(returns),
         options_(options),
@@ -64,7 +64,7 @@ class Judge {
 
   std::vector<CellRays> rays_in_cells(const PlacedScan& place) const {
     std::vector<CellRays> all;
-    for (const Rays& rays : rays_of(log_, place, returns_)) {
+    for (const Rays& rays : rays_of(scans_, place, returns_)) {
       if (!is_on_grid(rays.from_m)) continue;
       CellRays cells{cell_of(rays.from_m), {}};
       for (const Point2& hit_m : rays.hits_m) {
@@ -161,7 +161,7 @@ class Judge {
     return consistency;
   }
 
-  const Log& log_;
+  const std::vector<Scan>& scans_;
   const std::vector<PlacedScan>& placed_;
   const ReturnOptions& returns_;
   const ConsistencyOptions& options_;
@@ -173,16 +173,16 @@ class Judge {
 
 }  // namespace
 
-std::vector<ScanConsistency> scan_consistencies(const Log& log, const std::vector<PlacedScan>& placed,
+std::vector<ScanConsistency> scan_consistencies(const std::vector<Scan>& scans, const std::vector<PlacedScan>& placed,
                                                 const ReturnOptions& returns, const ConsistencyOptions& options) {
   validate(options);
-  return Judge(log, placed, returns, options).run();
+  return Judge(scans, placed, returns, options).run();
 }
 
-void judge_consistency(const Log& log, const ReturnOptions& returns, const ConsistencyOptions& options,
+void judge_consistency(const std::vector<Scan>& scans, const ReturnOptions& returns, const ConsistencyOptions& options,
                        std::vector<Component>& components) {
   for (Component& component : components) {
-    const std::vector<ScanConsistency> consistencies = scan_consistencies(log, component.scans, returns, options);
+    const std::vector<ScanConsistency> consistencies = scan_consistencies(scans, component.scans, returns, options);
     for (std::size_t i = 0; i < consistencies.size(); ++i) component.scans[i].consistency = consistencies[i];
   }
 }

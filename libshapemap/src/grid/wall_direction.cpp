@@ -195,12 +195,13 @@ WallDirection direction_of(const std::vector<Stretch>& stretches) {
 
 }  // namespace
 
-WallDirection wall_direction(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns) {
+WallDirection wall_direction(const std::vector<Scan>& scans, const std::vector<PlacedScan>& placed,
+                             const ReturnOptions& returns) {
   const std::vector<std::size_t> starts = starts_of_visits(placed);
   std::vector<std::vector<Run>> runs(starts.size() - 1);
   std::vector<double> deviations_m;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    for (const Rays& rays : rays_of(log, placed[starts[i]], returns)) {
+    for (const Rays& rays : rays_of(scans, placed[starts[i]], returns)) {
       for (Run& run : runs_of(rays)) {
         if (run.size() < kLeastPoints) continue;
         add_deviations(run, deviations_m);
@@ -216,11 +217,11 @@ WallDirection wall_direction(const Log& log, const std::vector<PlacedScan>& plac
   return direction_of(weighed(std::move(visits)));
 }
 
-std::vector<WallDirection> align_walls(const Log& log, const ReturnOptions& returns,
+std::vector<WallDirection> align_walls(const std::vector<Scan>& scans, const ReturnOptions& returns,
                                        std::vector<Component>& components) {
   std::vector<WallDirection> directions;
   for (Component& component : components) {
-    directions.push_back(wall_direction(log, component.scans, returns));
+    directions.push_back(wall_direction(scans, component.scans, returns));
     if (!directions.back().is_dominant()) continue;
     const Pose2 straight_from_map{0.0, 0.0, directions.back().turn_rad()};
     for (PlacedScan& place : component.scans) place.map_from_robot = straight_from_map * place.map_from_robot;

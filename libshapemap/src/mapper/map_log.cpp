@@ -51,10 +51,10 @@ MapResult map_log(const Log& log, const MappingOptions& options, MappingEvents& 
     result.interrupted = true;
   }
   const auto start = std::chrono::steady_clock::now();
-  judge_consistency(log, options.returns, options.consistency, result.components);
+  judge_consistency(log.scans, options.returns, options.consistency, result.components);
   result.times.consistency_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.largest_component = largest_component(result.components);
-  if (const TurnComparison turns = compare_turns(log, result.placed()); turns.is_mirrored()) {
+  if (const TurnComparison turns = compare_turns(log.scans, sessions_of(log), result.placed()); turns.is_mirrored()) {
     events.on_warning("the scans seem to be mirrored: of the turns that the log itself records, " +
                       std::to_string(turns.num_opposite) + " of " +
                       std::to_string(turns.num_alike + turns.num_opposite) + " go the other way; see --upside-down");

@@ -7,7 +7,6 @@
 
 #include "mapper_numbers.hpp"
 #include "shapemap/core/angles.hpp"
-#include "shapemap/scan/joined_logs.hpp"
 
 namespace shapemap {
 bool TurnComparison::is_mirrored() const {
@@ -22,18 +21,19 @@ bool TurnComparison::is_mirrored() const {
   return -count * divergence < numbers.log_error;
 }
 
-TurnComparison compare_turns(const Log& log, const std::vector<PlacedScan>& placed) {
+TurnComparison compare_turns(const std::vector<Scan>& scans, const std::vector<std::size_t>& sessions,
+                             const std::vector<PlacedScan>& placed) {
   const MirrorNumbers& numbers = kMapper.mirror;
   TurnComparison turns;
   const PlacedScan* since = nullptr;  // turns add up from here until they are large enough
   for (const PlacedScan& here : placed) {
-    const std::optional<double>& after = log.scans[here.scan_index].recorded_heading_rad;
+    const std::optional<double>& after = scans[here.scan_index].recorded_heading_rad;
     if (!after) continue;
-    if (since == nullptr || part_with(log, since->scan_index) != part_with(log, here.scan_index)) {
+    if (since == nullptr || sessions.at(since->scan_index) != sessions.at(here.scan_index)) {
       since = &here;
       continue;
     }
-    const double recorded_rad = wrap_angle(*after - *log.scans[since->scan_index].recorded_heading_rad);
+    const double recorded_rad = wrap_angle(*after - *scans[since->scan_index].recorded_heading_rad);
     const double mapped_rad = wrap_angle(here.map_from_robot.theta_rad - since->map_from_robot.theta_rad);
     const double smaller_rad = std::min(std::abs(recorded_rad), std::abs(mapped_rad));
     const double larger_rad = std::max(std::abs(recorded_rad), std::abs(mapped_rad));

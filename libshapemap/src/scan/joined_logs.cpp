@@ -40,4 +40,12 @@ std::size_t part_with(const Log& log, std::size_t index) {
   return static_cast<std::size_t>(std::upper_bound(log.starts.begin(), log.starts.end(), index) - log.starts.begin());
 }
 
+std::vector<std::size_t> sessions_of(const Log& log) {
+  std::vector<std::size_t> sessions;
+  sessions.reserve(log.scans.size());
+  const std::vector<LogPart> parts = parts_of(log);
+  for (std::size_t k = 0; k < parts.size(); ++k) sessions.resize(parts[k].last, k);
+  return sessions;
+}
+
 }  // namespace shapemap

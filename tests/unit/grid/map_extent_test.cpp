@@ -21,7 +21,7 @@ OccupancyGrid drawn(const PlacedLog& walk, bool draw_all = false) {
   OccupancyGridOptions options;
   options.resolution_m = 0.1;
   options.draw_all = draw_all;
-  return build_occupancy_grid(walk.log, walk.placed, {}, options);
+  return build_occupancy_grid(walk.log.scans, walk.placed, {}, options);
 }
 
 double width_m(const OccupancyGrid& map) { return map.width_cells * map.resolution_m; }

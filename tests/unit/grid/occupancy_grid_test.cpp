@@ -24,18 +24,14 @@ Sweep three_beams(float right_m, float ahead_m, float left_m) {
   return sweep;
 }
 
-Log log_of(const Sweep& sweep) {
-  Log log;
-  log.scans.push_back({1.0, {sweep}, std::nullopt, std::nullopt});
-  return log;
-}
+std::vector<Scan> scans_of(const Sweep& sweep) { return {Scan{1.0, {sweep}, std::nullopt, std::nullopt}}; }
 
 PlacedScan placed_at(const Pose2& map_from_robot, std::size_t index = 0) {
   return {index, 1.0, map_from_robot, {Pose2{}}};
 }
 
-OccupancyGrid map_of(const Log& log, const Pose2& map_from_robot, double resolution_m = 0.1) {
-  return build_occupancy_grid(log, {placed_at(map_from_robot)}, ReturnOptions{}, OccupancyGridOptions{resolution_m});
+OccupancyGrid map_of(const std::vector<Scan>& scans, const Pose2& map_from_robot, double resolution_m = 0.1) {
+  return build_occupancy_grid(scans, {placed_at(map_from_robot)}, ReturnOptions{}, OccupancyGridOptions{resolution_m});
 }
 
 int grey_at(const OccupancyGrid& map, double x_m, double y_m) {
@@ -60,7 +56,7 @@ TEST(OccupancyGrid, NorthOfTheOriginIsTowardsRowZero) {
 }
 
 TEST(OccupancyGrid, HitsAreDarkTheWayThereIsLightTheRestIsUnknown) {
-  const OccupancyGrid map = map_of(log_of(three_beams(1.0F, 2.0F, 3.0F)), {0.05, 0.05, 0.0});
+  const OccupancyGrid map = map_of(scans_of(three_beams(1.0F, 2.0F, 3.0F)), {0.05, 0.05, 0.0});
   EXPECT_LT(grey_at(map, 2.05, 0.05), 60);
   EXPECT_LT(grey_at(map, 0.05, -0.95), 60);
   EXPECT_LT(grey_at(map, 0.05, 3.05), 60);
@@ -73,21 +69,21 @@ TEST(OccupancyGrid, HitsAreDarkTheWayThereIsLightTheRestIsUnknown) {
 TEST(OccupancyGrid, ReadingsThatHitNothingAddNothing) {
   const float nothing = std::numeric_limits<float>::quiet_NaN();
   for (const float reading : {nothing, 0.0F, -1.0F, 10.0F, std::numeric_limits<float>::infinity()}) {
-    const OccupancyGrid with = map_of(log_of(three_beams(1.0F, reading, 3.0F)), {});
+    const OccupancyGrid with = map_of(scans_of(three_beams(1.0F, reading, 3.0F)), {});
     Sweep without = three_beams(1.0F, 1.0F, 3.0F);
     without.ranges_m[1] = nothing;
-    EXPECT_EQ(with.grey, map_of(log_of(without), {}).grey) << reading;
+    EXPECT_EQ(with.grey, map_of(scans_of(without), {}).grey) << reading;
     EXPECT_EQ(with.width_cells, 9) << "one column and four cells of margin on either side, for " << reading;
   }
 }
 
 TEST(OccupancyGrid, SweepsStandWhereTheirCorrectionsPutThem) {
-  Log log = log_of(three_beams(NAN, 2.0F, NAN));
-  log.scans[0].sweeps.push_back(three_beams(NAN, 2.0F, NAN));
-  log.scans[0].sweeps[1].nominal_heading_rad = kPi / 2;
+  std::vector<Scan> scans = scans_of(three_beams(NAN, 2.0F, NAN));
+  scans[0].sweeps.push_back(three_beams(NAN, 2.0F, NAN));
+  scans[0].sweeps[1].nominal_heading_rad = kPi / 2;
   PlacedScan place = placed_at({1.05, 1.05, kPi / 2});
   place.robot_from_sweep = {Pose2{}, Pose2{0.0, 0.5, 0.0}};
-  const OccupancyGrid map = build_occupancy_grid(log, {place}, ReturnOptions{}, OccupancyGridOptions{0.1});
+  const OccupancyGrid map = build_occupancy_grid(scans, {place}, ReturnOptions{}, OccupancyGridOptions{0.1});
   EXPECT_LT(grey_at(map, 1.05, 3.05), 60);   // ahead of a robot that faces north
   EXPECT_LT(grey_at(map, -1.45, 1.05), 60);  // the second sweep looks west, from half a metre to the robot's left
 }
@@ -95,28 +91,28 @@ TEST(OccupancyGrid, SweepsStandWhereTheirCorrectionsPutThem) {
 TEST(OccupancyGrid, ATiltedLaserIsProjectedAndABeyondLimitOneLeftOut) {
   Sweep tilted = three_beams(1.0F, 2.0F, 1.0F);
   tilted.robot_from_sensor.pitch_rad = 20 * kDegree;
-  const OccupancyGrid map = map_of(log_of(tilted), {0.05, 0.05, 0.0});
+  const OccupancyGrid map = map_of(scans_of(tilted), {0.05, 0.05, 0.0});
   EXPECT_LT(grey_at(map, 0.05 + 2.0 * std::cos(20 * kDegree), 0.05), 60);
 
-  Log log = log_of(three_beams(1.0F, 2.0F, 1.0F));
-  const OccupancyGrid alone = map_of(log, {});
-  log.scans[0].sweeps.push_back(three_beams(3.0F, 3.0F, 3.0F));
-  log.scans[0].sweeps[1].robot_from_sensor.pitch_rad = 60 * kDegree;
+  std::vector<Scan> scans = scans_of(three_beams(1.0F, 2.0F, 1.0F));
+  const OccupancyGrid alone = map_of(scans, {});
+  scans[0].sweeps.push_back(three_beams(3.0F, 3.0F, 3.0F));
+  scans[0].sweeps[1].robot_from_sensor.pitch_rad = 60 * kDegree;
   PlacedScan place = placed_at({});
   place.robot_from_sweep = {Pose2{}, Pose2{}};
-  EXPECT_EQ(build_occupancy_grid(log, {place}, ReturnOptions{}, OccupancyGridOptions{0.1}).grey, alone.grey);
+  EXPECT_EQ(build_occupancy_grid(scans, {place}, ReturnOptions{}, OccupancyGridOptions{0.1}).grey, alone.grey);
 }
 
 TEST(OccupancyGrid, AnUpsideDownLaserSeesItsLeftOnTheRight) {
   Sweep upside_down = three_beams(1.0F, 2.0F, 3.0F);
   upside_down.robot_from_sensor.roll_rad = kPi;
-  const OccupancyGrid map = map_of(log_of(upside_down), {0.05, 0.05, 0.0});
+  const OccupancyGrid map = map_of(scans_of(upside_down), {0.05, 0.05, 0.0});
   EXPECT_LT(grey_at(map, 0.05, 1.05), 60);
   EXPECT_LT(grey_at(map, 0.05, -2.95), 60);
 }
 
 TEST(OccupancyGrid, IsCroppedToWhatWasSeenOnWholeCells) {
-  const OccupancyGrid map = map_of(log_of(three_beams(1.0F, 2.0F, 3.0F)), {100.05, -50.05, 0.0});
+  const OccupancyGrid map = map_of(scans_of(three_beams(1.0F, 2.0F, 3.0F)), {100.05, -50.05, 0.0});
   EXPECT_EQ(map.width_cells, 21 + 8);
   EXPECT_EQ(map.height_cells, 41 + 8);
   EXPECT_NEAR(map.origin_m.x(), 100.0 - 0.4, 1e-9);
@@ -127,31 +123,31 @@ TEST(OccupancyGrid, RefusesWhatWouldNotFitAndSaysWhatHelps) {
   Sweep far = three_beams(900.0F, 900.0F, 900.0F);
   far.max_range_m = 0.0;
   try {
-    map_of(log_of(far), {}, 0.01);
+    map_of(scans_of(far), {}, 0.01);
     FAIL() << "a map of 1e10 cells was built";
   } catch (const OutputError& e) {
     EXPECT_THAT(e.what(), HasSubstr("--resolution-m"));
   }
-  EXPECT_NO_THROW(map_of(log_of(three_beams(1.0F, 2.0F, 1.0F)), {}, 0.001));
+  EXPECT_NO_THROW(map_of(scans_of(three_beams(1.0F, 2.0F, 1.0F)), {}, 0.001));
 }
 
 TEST(OccupancyGrid, WithoutAPoseThereIsNoMap) {
-  EXPECT_THROW(build_occupancy_grid(log_of(three_beams(1, 1, 1)), {}, ReturnOptions{}, OccupancyGridOptions{}),
+  EXPECT_THROW(build_occupancy_grid(scans_of(three_beams(1, 1, 1)), {}, ReturnOptions{}, OccupancyGridOptions{}),
                OutputError);
 }
 
 /// All scans look ahead along x: two see free space up to 2 m, and one contradicts them.
 struct Disputed {
   Disputed() {
-    log.scans.push_back({1.0, {three_beams(1.0F, 2.0F, 1.0F)}, std::nullopt, std::nullopt});
-    log.scans.push_back({2.0, {three_beams(1.0F, 3.0F, 0.5F)}, std::nullopt, std::nullopt});
+    scans.push_back({1.0, {three_beams(1.0F, 2.0F, 1.0F)}, std::nullopt, std::nullopt});
+    scans.push_back({2.0, {three_beams(1.0F, 3.0F, 0.5F)}, std::nullopt, std::nullopt});
     placed = {placed_at({0.05, 0.05, 0.0}, 0), placed_at({0.05, 0.05, 0.0}, 0), placed_at({0.05, 0.05, 0.0}, 1)};
   }
   OccupancyGrid map(Contradicting what) const {
-    return build_occupancy_grid(log, placed, {}, OccupancyGridOptions{0.1, what});
+    return build_occupancy_grid(scans, placed, {}, OccupancyGridOptions{0.1, what});
   }
 
-  Log log;
+  std::vector<Scan> scans;
   std::vector<PlacedScan> placed;
 };
 
@@ -185,9 +181,9 @@ TEST(OccupancyGrid, WhatContradictsDrawsWhereNoOtherScanSees) {
 }
 
 TEST(OccupancyGrid, ComesOutTheSameEachTime) {
-  const Log log = log_of(three_beams(1.0F, 2.0F, 3.0F));
+  const std::vector<Scan> scans = scans_of(three_beams(1.0F, 2.0F, 3.0F));
   const Pose2 pose{0.3, 0.7, 0.123};
-  EXPECT_EQ(map_of(log, pose, 0.013).grey, map_of(log, pose, 0.013).grey);
+  EXPECT_EQ(map_of(scans, pose, 0.013).grey, map_of(scans, pose, 0.013).grey);
 }
 
 }  // namespace

@@ -18,16 +18,16 @@ namespace {
 
 /// Scans of a world, and their poses in the map.
 struct Mapped {
-  Log log;
+  std::vector<Scan> scans;
   std::vector<PlacedScan> placed;
 
   void add(const test::World& world, const Pose2& pose, const test::Scanner& scanner, std::mt19937& rng) {
-    log.scans.push_back(test::scan_of(world, pose, scanner, rng));
+    scans.push_back(test::scan_of(world, pose, scanner, rng));
     placed.push_back({placed.size(), 0.0, pose, {Pose2{}}});
   }
-  std::vector<float>& ranges(std::size_t i) { return log.scans.at(i).sweeps.at(0).ranges_m; }
+  std::vector<float>& ranges(std::size_t i) { return scans.at(i).sweeps.at(0).ranges_m; }
   std::vector<ScanConsistency> consistencies(const ConsistencyOptions& options = {}) const {
-    return scan_consistencies(log, placed, ReturnOptions{}, options);
+    return scan_consistencies(scans, placed, ReturnOptions{}, options);
   }
   std::vector<std::size_t> contradicting(const ConsistencyOptions& options = {}) const {
     std::vector<std::size_t> found;
@@ -150,7 +150,7 @@ TEST(ScanConsistency, WallsThatOthersSeeThroughAreNoWalls) {
   Mapped alone = ring(6);
   for (float& range_m : alone.ranges(30)) range_m += 1.5F;
   Mapped glass = ring(6);
-  for (std::size_t i = 0; i < glass.log.scans.size(); i += 2) {
+  for (std::size_t i = 0; i < glass.scans.size(); i += 2) {
     for (float& range_m : glass.ranges(i)) range_m += 1.5F;
   }
   EXPECT_GT(alone.consistencies()[30].through, 0.5);
@@ -211,9 +211,9 @@ TEST(ScanConsistency, EachComponentIsJudgedByItself) {
   std::vector<Component> components(2);
   for (const PlacedScan& place : mapped.placed) components[place.scan_index % 2].scans.push_back(place);
   components[1].scans[10].map_from_robot = components[1].scans[10].map_from_robot * Pose2{0.4, 0.9, 0.4};
-  judge_consistency(mapped.log, {}, {}, components);
+  judge_consistency(mapped.scans, {}, {}, components);
   for (std::size_t f = 0; f < 2; ++f) {
-    const std::vector<ScanConsistency> alone = scan_consistencies(mapped.log, components[f].scans, {}, {});
+    const std::vector<ScanConsistency> alone = scan_consistencies(mapped.scans, components[f].scans, {}, {});
     for (std::size_t i = 0; i < alone.size(); ++i) {
       EXPECT_EQ(components[f].scans[i].consistency.agree, alone[i].agree);
       EXPECT_EQ(components[f].scans[i].consistency.contradicts_map, f == 1 && i == 10) << f << ", " << i;

@@ -36,7 +36,7 @@ PlacedLog walk_in(const World& world, double turn_rad = 0.0, double noise_m = 0.
                       noisy_scanner(noise_m));
 }
 
-WallDirection direction_in(const PlacedLog& walk) { return wall_direction(walk.log, walk.placed, {}); }
+WallDirection direction_in(const PlacedLog& walk) { return wall_direction(walk.log.scans, walk.placed, {}); }
 
 World room_with_clutter() {
   World world;
@@ -96,7 +96,7 @@ TEST(WallDirection, OfTwoWingsIsThatOfTheLarger) {
 TEST(WallDirection, OfNothingIsNone) {
   PlacedLog walk = walk_in({});
   EXPECT_FALSE(direction_in(walk).is_dominant());
-  EXPECT_FALSE(wall_direction(walk.log, {}, {}).is_dominant());
+  EXPECT_FALSE(wall_direction(walk.log.scans, {}, {}).is_dominant());
 }
 
 TEST(WallDirection, TurnsAllComponentsAndNoMotion) {
@@ -104,23 +104,23 @@ TEST(WallDirection, TurnsAllComponentsAndNoMotion) {
   const PlacedLog other = walk_in(room_with_clutter(), -5 * kDegree);
   const PlacedLog round = walk_in(polygon(60, 6.0));
   std::vector<Component> components(3);
-  Log log;
+  std::vector<Scan> scans;
   for (const PlacedLog* part : std::vector<const PlacedLog*>{&walk, &other, &round}) {
     for (PlacedScan place : part->placed) {
-      place.scan_index += log.scans.size() - place.scan_index;
+      place.scan_index += scans.size() - place.scan_index;
       components[static_cast<std::size_t>(part == &other) + 2 * static_cast<std::size_t>(part == &round)]
           .scans.push_back(place);
-      log.scans.push_back(part->log.scans[place.scan_index % 9]);
+      scans.push_back(part->log.scans[place.scan_index % 9]);
     }
   }
   const std::vector<Component> before = components;
-  const std::vector<WallDirection> found = align_walls(log, {}, components);
+  const std::vector<WallDirection> found = align_walls(scans, {}, components);
   ASSERT_EQ(found.size(), 3U);
   EXPECT_NEAR(found[0].turn_rad() / kDegree, -17.0, 0.1);
   EXPECT_NEAR(found[1].turn_rad() / kDegree, 5.0, 0.1);
   EXPECT_EQ(found[2].turn_rad(), 0.0);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(wall_direction(log, components[i].scans, {}).turn_rad(), 0.0, 1e-3);
+    EXPECT_NEAR(wall_direction(scans, components[i].scans, {}).turn_rad(), 0.0, 1e-3);
     for (std::size_t k = 1; k < 9; ++k) {
       const auto motion = [&](const std::vector<PlacedScan>& placed) {
         return inverse(placed[k - 1].map_from_robot) * placed[k].map_from_robot;

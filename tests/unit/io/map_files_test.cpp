@@ -36,7 +36,9 @@ struct World {
     log.scans.push_back({12.5, {sweep}, std::nullopt, std::nullopt});
     placed.push_back({0, 12.5, {2.0, 1.0, kPi / 2}, {Pose2{}}});
   }
-  OccupancyGrid map() const { return build_occupancy_grid(log, placed, ReturnOptions{}, OccupancyGridOptions{0.07}); }
+  OccupancyGrid map() const {
+    return build_occupancy_grid(log.scans, placed, ReturnOptions{}, OccupancyGridOptions{0.07});
+  }
 };
 
 /// Reads the numbers of a map.yaml in the way of ROS map_server.

@@ -31,7 +31,7 @@ OccupancyGrid drawn(const PlacedLog& walk, double clear_no_return_m) {
   OccupancyGridOptions options;
   options.resolution_m = 0.1;
   options.clear_no_return_m = clear_no_return_m;
-  return build_occupancy_grid(walk.log, walk.placed, {}, options);
+  return build_occupancy_grid(walk.log.scans, walk.placed, {}, options);
 }
 
 PlacedLog one_scan(const Scan& scan) {

@@ -24,6 +24,7 @@ TEST(JoinedLogs, HasAllScansInOrderAndKnowsWhereEachLogBegins) {
   EXPECT_EQ(all.scans[5].timestamp_s, 50.0);
   const std::vector<std::size_t> expected{0, 0, 0, 1, 1, 2, 2, 2, 2};
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(part_with(all, i), expected[i]) << i;
+  EXPECT_EQ(sessions_of(all), expected);
   const std::vector<LogPart> parts = parts_of(all);
   ASSERT_EQ(parts.size(), 3U);
   EXPECT_EQ(parts[1].first, 3U);
@@ -38,6 +39,7 @@ TEST(JoinedLogs, OfOneLogIsThatLog) {
   ASSERT_EQ(parts_of(all).size(), 1U);
   EXPECT_EQ(parts_of(all)[0].last, 3U);
   EXPECT_EQ(part_with(all, 2), 0U);
+  EXPECT_EQ(sessions_of(all), (std::vector<std::size_t>{0, 0, 0}));
 }
 
 TEST(JoinedLogs, AnEmptyLogKeepsItsNumber) {
@@ -46,6 +48,7 @@ TEST(JoinedLogs, AnEmptyLogKeepsItsNumber) {
   EXPECT_EQ(parts_of(all)[1].first, parts_of(all)[1].last);
   EXPECT_EQ(part_with(all, 1), 0U);
   EXPECT_EQ(part_with(all, 2), 2U);
+  EXPECT_EQ(sessions_of(all), (std::vector<std::size_t>{0, 0, 2}));
 }
 
 TEST(JoinedLogs, OfJoinedLogsKnowsAllBeginnings) {

@@ -67,8 +67,9 @@ struct StraightenedLog {
 /// Returns the log with its sweeps as if all beams of a sweep had been sent at its stamp. A session is returned bit for
 /// bit where there is nothing to straighten: stamps that say nothing, scans that are far apart, a robot that stands.
 /// The log holds only every n-th scan of its recording, n being `every`, so that a laser goes round n times from one
-/// scan to the next. The same input and options give the same bits for any number of threads. Throws Interrupted when
-/// the observer asks to stop.
+/// scan to the next. This works on whole recordings by its nature, for the motion of a sweep is known only from the
+/// sweeps after it, and the rate of the laser from all of them: hence a log and not its scans one by one. The same
+/// input and options give the same bits for any number of threads. Throws Interrupted when the observer asks to stop.
 StraightenedLog straightened(Log log, const ReturnOptions& returns, const DeskewOptions& options, int every,
                              const Execution& execution);
 

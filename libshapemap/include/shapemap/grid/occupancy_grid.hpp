@@ -60,7 +60,7 @@ struct OccupancyGrid {
 /// last. A few far returns that would make the grid many times larger lie outside, and their beams are drawn up to its
 /// rim, unless `options.draw_all`. Throws OutputError when there are no scans or the map would have more than 400
 /// million cells, and ConfigError when an option is out of its range.
-OccupancyGrid build_occupancy_grid(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns,
-                                   const OccupancyGridOptions& options);
+OccupancyGrid build_occupancy_grid(const std::vector<Scan>& scans, const std::vector<PlacedScan>& placed,
+                                   const ReturnOptions& returns, const OccupancyGridOptions& options);
 
 }  // namespace shapemap

@@ -18,7 +18,7 @@ struct Rays {
 
 /// Returns the rays of each sweep of a scan that has any. A sensor that is tilted beyond the limit has no returns and
 /// stays out.
-std::vector<Rays> rays_of(const Log& log, const PlacedScan& place, const ReturnOptions& options);
+std::vector<Rays> rays_of(const std::vector<Scan>& scans, const PlacedScan& place, const ReturnOptions& options);
 
 /// Open rays are the beams of one laser that hit nothing, in the map frame.
 struct OpenRays {
@@ -28,7 +28,7 @@ struct OpenRays {
 
 /// Returns the open rays of each sweep of a scan that has any; they end after `length_m`, or as in
 /// open_ends_in_robot().
-std::vector<OpenRays> open_rays_of(const Log& log, const PlacedScan& place, const ReturnOptions& options,
-                                   double length_m);
+std::vector<OpenRays> open_rays_of(const std::vector<Scan>& scans, const PlacedScan& place,
+                                   const ReturnOptions& options, double length_m);
 
 }  // namespace shapemap

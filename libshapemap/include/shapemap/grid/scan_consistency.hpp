@@ -41,11 +41,11 @@ struct ConsistencyOptions {
 /// degrees make one visit, and scans of a visit are no evidence about each other: they may lean, or stand in the same
 /// crowd, together. Time is linear in the number of beams, and memory in the area that was seen. Poses too far off for
 /// any map are left out, with no beams known. Throws ConfigError when an option is out of its range.
-std::vector<ScanConsistency> scan_consistencies(const Log& log, const std::vector<PlacedScan>& placed,
+std::vector<ScanConsistency> scan_consistencies(const std::vector<Scan>& scans, const std::vector<PlacedScan>& placed,
                                                 const ReturnOptions& returns, const ConsistencyOptions& options);
 
 /// Writes the consistency into all placed scans; each component is judged by itself.
-void judge_consistency(const Log& log, const ReturnOptions& returns, const ConsistencyOptions& options,
+void judge_consistency(const std::vector<Scan>& scans, const ReturnOptions& returns, const ConsistencyOptions& options,
                        std::vector<Component>& components);
 
 }  // namespace shapemap

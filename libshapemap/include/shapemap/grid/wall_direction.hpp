@@ -39,11 +39,12 @@ struct WallDirection {
 /// length, so that a long wall outweighs what stands before it. The total weight of a visit is limited likewise, so
 /// that a hall that was seen once through a door does not outweigh the rooms. The direction is the mode of these modulo
 /// 90 degrees, refined to the mean of what is within 5 degrees of it.
-WallDirection wall_direction(const Log& log, const std::vector<PlacedScan>& placed, const ReturnOptions& returns);
+WallDirection wall_direction(const std::vector<Scan>& scans, const std::vector<PlacedScan>& placed,
+                             const ReturnOptions& returns);
 
 /// Turns each component about its origin by the least turn that makes its walls straight. Motions between its scans
 /// stay what they are. Returns one direction for each component.
-std::vector<WallDirection> align_walls(const Log& log, const ReturnOptions& returns,
+std::vector<WallDirection> align_walls(const std::vector<Scan>& scans, const ReturnOptions& returns,
                                        std::vector<Component>& components);
 
 }  // namespace shapemap

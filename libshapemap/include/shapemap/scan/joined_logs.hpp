@@ -26,4 +26,7 @@ std::vector<LogPart> parts_of(const Log& log);
 /// Returns the index of the session that scan `index` is from.
 std::size_t part_with(const Log& log, std::size_t index);
 
+/// Returns the index of the session of each scan, for those who know the scans but not their log.
+std::vector<std::size_t> sessions_of(const Log& log);
+
 }  // namespace shapemap

@@ -20,9 +20,9 @@ struct ScanConsistency {
   double known() const { return agree + through + in_free; }
 };
 
-/// A placed scan is a scan of the log with its pose.
+/// A placed scan is a scan with its pose.
 struct PlacedScan {
-  std::size_t scan_index = 0;  ///< index into Log::scans
+  std::size_t scan_index = 0;  ///< index into the list of scans that functions take beside it
   double timestamp_s = 0.0;
   Pose2 map_from_robot;
   /// Decoupled ICP corrects each sweep a little. This is the pose of the sweep's robot frame in the scan's robot frame,
