@@ -149,10 +149,10 @@ def test_strict_paper_first_then_file_then_flags(run, tmp_path):
     assert strict != default, "the literal readings are not all the defaults"
     name = next(n for n in strict if strict[n] != default[n])
     value = str(default[name]).lower() if isinstance(default[name], bool) else repr(default[name])
-    (tmp_path / "c.toml").write_text(f"{name} = {value}\nseed = 3\nresolution-m = 0.1 # coarse\n")
-    values = options_of(run("--strict-paper", "--config", "c.toml", "--seed", "4", "--dump-config").stdout)
+    (tmp_path / "c.toml").write_text(f"{name} = {value}\nthreads = 3\nresolution-m = 0.1 # coarse\n")
+    values = options_of(run("--strict-paper", "--config", "c.toml", "--threads", "4", "--dump-config").stdout)
     assert values[name] == default[name]
-    assert values["seed"] == 4
+    assert values["threads"] == 4
     assert values["resolution-m"] == 0.1
 
 
@@ -167,11 +167,11 @@ def test_a_switch_can_be_turned_off_again(run, tmp_path):
     [
         ("\nno-such-key = 1\n", ["bad.toml:2", "no-such-key"]),
         ("x\n", ["bad.toml:1"]),
-        ("seed = 1\nseed = 2\n", ["bad.toml:2", "seed", "twice"]),
-        ("seed = \n", ["bad.toml:1", "seed"]),
-        ("seed = '1'\n", ["bad.toml:1", "seed"]),
-        ("seed = 1 2\n", ["bad.toml:1", "seed"]),
-        ("seed = 1e99\n", ["bad.toml:1", "--seed"]),
+        ("threads = 1\nthreads = 2\n", ["bad.toml:2", "threads", "twice"]),
+        ("threads = \n", ["bad.toml:1", "threads"]),
+        ("threads = '1'\n", ["bad.toml:1", "threads"]),
+        ("threads = 1 2\n", ["bad.toml:1", "threads"]),
+        ("threads = 1e99\n", ["bad.toml:1", "--threads"]),
         ("sensor-label = left\n", ["bad.toml:1", "sensor-label", "quotes"]),
         ('sensor-label = "left\n', ["bad.toml:1", "quote"]),
         ('sensor-label = "left" right\n', ["bad.toml:1", "sensor-label"]),

@@ -4,6 +4,14 @@
 
 namespace shapemap {
 
+Edge edge_to_next(std::size_t a, double insufficient_view) {
+  Edge edge;
+  edge.a = a;
+  edge.b = a + 1;
+  edge.insufficient_view = insufficient_view;
+  return edge;
+}
+
 std::vector<Pose2> sure_steps(const std::vector<Edge>& edges) {
   std::vector<Pose2> steps;
   for (const Edge& edge : edges) {

@@ -41,6 +41,13 @@ double margin_to_other_places(const KeyframeGraph& graph, std::size_t edge) {
 
 }  // namespace
 
+std::size_t keyframe_of(const KeyframeGraph& graph, std::size_t scan_index) {
+  const auto found =
+      std::lower_bound(graph.keyframes.begin(), graph.keyframes.end(), scan_index,
+                       [](const Keyframe& keyframe, std::size_t scan) { return keyframe.scan_index < scan; });
+  return static_cast<std::size_t>(found - graph.keyframes.begin());
+}
+
 double surprise(const Keyframe& keyframe, const MotionPrior& prior, const Pose2& found) {
   return keyframe.expected ? surprise(*keyframe.expected, found) : prior.surprise(found);
 }

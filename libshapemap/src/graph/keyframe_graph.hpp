@@ -63,6 +63,9 @@ struct KeyframeGraph {
   std::vector<OdometryEdge> edges;  ///< links[i] joins keyframe i to keyframe i + 1
 };
 
+/// Returns the index of the first keyframe whose scan is number `scan_index` or a later one.
+std::size_t keyframe_of(const KeyframeGraph& graph, std::size_t scan_index);
+
 /// As logarithm of odds against it, of a keyframe that is found there, seen from the one before it: by habit where
 /// nothing was to be expected.
 double surprise(const Keyframe& keyframe, const MotionPrior& prior, const Pose2& found);

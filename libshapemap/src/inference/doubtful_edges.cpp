@@ -7,6 +7,7 @@
 
 #include "graph/keyframe_match_cache.hpp"
 #include "inference_numbers.hpp"
+#include "loops/loop_candidates.hpp"
 #include "shapemap/core/errors.hpp"
 #include "shapemap/inference/edge_verification.hpp"
 #include "shapemap/inference/map_refinement.hpp"
@@ -25,9 +26,7 @@ class DoubtfulEdges {
  public:
   DoubtfulEdges(const RobustOptions& options, const Execution& execution, KeyframeGraph& graph, OptimizedMap& map,
                 MatchCache* store)
-      : options_(options), execution_(execution), graph_(graph), map_(map), store_(store) {
-    for (const Keyframe& keyframe : graph.keyframes) views_.push_back(keyframe.view);
-  }
+      : options_(options), execution_(execution), graph_(graph), map_(map), store_(store), views_(views_of(graph)) {}
 
   bool run() {
     poses_ = map_.map_from_keyframe;
@@ -126,18 +125,14 @@ class DoubtfulEdges {
     submap_ = connected_components(views_.size(), sure);
     for (const std::size_t i : doubtful) {
       if (submap_[i] == submap_[i + 1]) continue;
-      Edge edge;
-      edge.a = i;
-      edge.b = i + 1;
-      edge.insufficient_view = graph_.edges[i].insufficient_view;
-      const std::size_t in_map = candidate_in_map(i);
-      doubts_.push_back({std::move(edge), in_map, {}});
+      doubts_.push_back({edge_to_next(i, graph_.edges[i].insufficient_view), candidate_in_map(i), {}});
     }
   }
 
   bool is_sure(const ClosedLoop& loop) const {
-    return loop.strength >= kInference.search.joining_strength || !looks_all_round(*views_[keyframe_of(loop.a)]) ||
-           !looks_all_round(*views_[keyframe_of(loop.b)]);
+    return loop.strength >= kInference.search.joining_strength ||
+           !looks_all_round(*views_[keyframe_of(graph_, loop.a)]) ||
+           !looks_all_round(*views_[keyframe_of(graph_, loop.b)]);
   }
 
   /// A link that is cut where loops hold both sides is as doubtful as one that is improbable: so are the loops.
@@ -152,7 +147,8 @@ class DoubtfulEdges {
     std::vector<PoseConstraint> constraints;
     for (const ClosedLoop& loop : map_.loops) {
       if (!which(loop)) continue;
-      constraints.push_back({keyframe_of(loop.a), keyframe_of(loop.b), loop.a_from_b, loop_covariance(), 0.0});
+      constraints.push_back(
+          {keyframe_of(graph_, loop.a), keyframe_of(graph_, loop.b), loop.a_from_b, loop_covariance(), 0.0});
     }
     return constraints;
   }
@@ -160,20 +156,14 @@ class DoubtfulEdges {
   /// Loops between pieces that were laid together otherwise, or not at all.
   void drop_contradicted_loops() {
     const auto is_contradicted = [&](const ClosedLoop& loop) {
-      const std::size_t a = keyframe_of(loop.a);
-      const std::size_t b = keyframe_of(loop.b);
+      const std::size_t a = keyframe_of(graph_, loop.a);
+      const std::size_t b = keyframe_of(graph_, loop.b);
       return submap_[a] != submap_[b] ||
              !agrees(loop.a_from_b, inverse(poses_[a]) * poses_[b], kInference.agreement.contradicts);
     };
     const auto end = std::remove_if(map_.loops.begin(), map_.loops.end(), is_contradicted);
     changed_ = changed_ || end != map_.loops.end();
     map_.loops.erase(end, map_.loops.end());
-  }
-
-  std::size_t keyframe_of(std::size_t scan) const {
-    const auto found = std::lower_bound(graph_.keyframes.begin(), graph_.keyframes.end(), scan,
-                                        [](const Keyframe& k, std::size_t p) { return k.scan_index < p; });
-    return static_cast<std::size_t>(found - graph_.keyframes.begin());
   }
 
   void add_candidates(Doubt& doubt, bool thoroughly) {

@@ -190,9 +190,8 @@ std::vector<std::pair<std::size_t, Pose2>> Localizer::candidates(std::size_t fir
     if (is_here && map_.component[loop.a] == verification_.active_component() && !redundant_[loop.a])
       here.push_back(&loop);
   }
-  std::stable_sort(here.begin(), here.end(), [](const EdgeCandidate* one, const EdgeCandidate* other) {
-    return one->score > other->score;
-  });
+  std::stable_sort(here.begin(), here.end(),
+                   [](const EdgeCandidate* one, const EdgeCandidate* other) { return one->score > other->score; });
   for (const EdgeCandidate* loop : here) {
     found.emplace_back(loop->b, map_.map_from_keyframe[loop->a] * loop->a_from_b);
   }

@@ -54,11 +54,7 @@ RevisitTracker::Followed RevisitTracker::follow(const KeyframeGraph& graph, cons
   add_edges(graph, result.map);
   result.map.map_from_keyframe.resize(count);
   for (std::size_t i = first; i < count; ++i) result.map.component.push_back(i);
-  const auto active_keyframe =
-      std::lower_bound(graph.keyframes.begin(), graph.keyframes.end(), active_scan_,
-                       [](const Keyframe& k, std::size_t scan) { return k.scan_index < scan; });
-  const std::size_t active_component =
-      result.map.component[static_cast<std::size_t>(active_keyframe - graph.keyframes.begin())];
+  const std::size_t active_component = result.map.component[keyframe_of(graph, active_scan_)];
   Localizer localizer(graph, options_, {active_component, first, state_}, loops, result.map);
   result.num_followed = localizer.go(std::max(first, last));
   for (std::size_t b = result.num_followed; b < count; ++b) localizer.expect(b);

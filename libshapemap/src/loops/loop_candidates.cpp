@@ -13,9 +13,7 @@ namespace {
 
 Edge choices_of_edge(const KeyframeGraph& graph, std::size_t i) {
   const OdometryEdge& edge = graph.edges[i];
-  Edge result;
-  result.a = i;
-  result.b = i + 1;
+  Edge result = edge_to_next(i, edge.insufficient_view);
   for (std::size_t rank = 0; rank < edge.candidates.size(); ++rank) {
     const std::size_t k = ranked_candidate(edge, rank);
     const PoseConstraint constraint = edge_constraint(graph, i, k);

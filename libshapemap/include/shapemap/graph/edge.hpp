@@ -33,6 +33,9 @@ struct Edge {
   bool exists() const { return !candidates.empty(); }
 };
 
+/// Returns an edge from node `a` to the next, without candidates.
+Edge edge_to_next(std::size_t a, double insufficient_view);
+
 /// The first candidates of the edges that tell how the robot usually moves: nine of ten of them at least are right.
 std::vector<Pose2> sure_steps(const std::vector<Edge>& edges);
 
