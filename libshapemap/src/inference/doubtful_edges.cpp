@@ -61,8 +61,8 @@ class DoubtfulEdges {
   void settle(double least_probability) {
     std::vector<Edge> doubtful;
     for (const Doubt& doubt : doubts_) doubtful.push_back(doubt.of_map);
-    VerifiedMap verified = verify_edges(views_, poses_, submap_, doubtful, options_.matcher.search.visibility,
-                                        least_probability, execution_.threads, execution_.observer);
+    VerifiedMap verified = verify_edges(views_, {poses_, submap_}, doubtful,
+                                        {options_.matcher.search.visibility, least_probability}, execution_);
     poses_ = std::move(verified.map_from_node);
     submap_ = std::move(verified.submap_of_node);
     std::vector<Doubt> rest;
@@ -262,9 +262,9 @@ class DoubtfulEdges {
   }
 
   void refine(const std::vector<PoseConstraint>& known) {
-    map_.map_from_keyframe = refine_map(views_, map_.map_from_keyframe, known, options_.matcher.search,
-                                        options_.refinement, execution_.threads, execution_.observer)
-                                 .map_from_node;
+    map_.map_from_keyframe =
+        refine_map(views_, map_.map_from_keyframe, known, {options_.matcher.search, options_.refinement}, execution_)
+            .map_from_node;
   }
 
   const RobustOptions& options_;

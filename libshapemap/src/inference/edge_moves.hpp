@@ -16,12 +16,12 @@ namespace shapemap {
 /// alignment is wrong, or a loop. Stops early when the observer asks to.
 class EdgeMoves {
  public:
-  EdgeMoves(MapObjective& problem, LoopMoves& closer, const std::vector<Edge>& edges,
-            const std::vector<LoopCluster>& clusters, const MapSearchOptions& options, RunObserver& observer)
+  EdgeMoves(MapObjective& problem, LoopMoves& closer, const GraphEvidence& evidence, const MapSearchOptions& options,
+            RunObserver& observer)
       : problem_(problem),
         closer_(closer),
-        edges_(edges),
-        clusters_(clusters),
+        edges_(evidence.edges),
+        clusters_(evidence.clusters),
         options_(options),
         observer_(observer) {}
 

@@ -231,12 +231,11 @@ class Revision {
 
 }  // namespace
 
-VerifiedMap verify_edges(const NodeViews& views, std::vector<Pose2> map_from_node,
-                         std::vector<std::size_t> submap_of_node, const std::vector<Edge>& doubtful,
-                         const VisibilityOptions& visibility, double least_probability, int threads,
-                         RunObserver& observer) {
-  Submaps submaps(std::move(map_from_node), std::move(submap_of_node));
-  return Revision(views, doubtful, std::move(submaps), visibility, threads).run(least_probability, observer);
+VerifiedMap verify_edges(const NodeViews& views, SubmapPoses submaps, const std::vector<Edge>& doubtful,
+                         const EdgeVerification& options, const Execution& execution) {
+  Submaps joined(std::move(submaps.map_from_node), std::move(submaps.submap_of_node));
+  return Revision(views, doubtful, std::move(joined), options.visibility, execution.threads)
+      .run(options.least_probability, execution.observer);
 }
 
 }  // namespace shapemap

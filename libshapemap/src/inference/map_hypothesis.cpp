@@ -36,17 +36,16 @@ std::vector<PoseConstraint> constraints_of(const LoopCluster& cluster) {
 
 }  // namespace
 
-MapObjective::MapObjective(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<Edge>& edges,
-                           const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
+MapObjective::MapObjective(const GraphEvidence& evidence, const VisibilityOptions& visibility,
                            const MapSearchOptions& options, int threads)
-    : edges_(edges),
-      clusters_(clusters),
+    : edges_(evidence.edges),
+      clusters_(evidence.clusters),
       options_(options),
-      score_(views, visibility, threads),
-      num_nodes_(views.size()),
-      usual_(step_statistics(sure_steps(edges))) {
-  for (const LoopCluster& cluster : clusters) loop_constraints_.push_back(constraints_of(cluster));
-  conflicts_ = conflicting_loops(clusters);
+      score_(evidence.views, visibility, threads),
+      num_nodes_(evidence.views.size()),
+      usual_(step_statistics(sure_steps(evidence.edges))) {
+  for (const LoopCluster& cluster : clusters_) loop_constraints_.push_back(constraints_of(cluster));
+  conflicts_ = conflicting_loops(clusters_);
 }
 
 MapHypothesis MapObjective::undecided(std::vector<Pose2> map_from_node) const {

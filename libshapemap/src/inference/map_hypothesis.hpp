@@ -26,9 +26,8 @@ struct MapHypothesis {
 /// Maps that follow from choices, and what they are worth.
 class MapObjective {
  public:
-  MapObjective(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<Edge>& edges,
-               const std::vector<LoopCluster>& clusters, const VisibilityOptions& visibility,
-               const MapSearchOptions& options, int threads);
+  MapObjective(const GraphEvidence& evidence, const VisibilityOptions& visibility, const MapSearchOptions& options,
+               int threads);
 
   /// The chain by itself, without loops. Pieces that nothing joins lie far apart.
   MapHypothesis chain_alone();

@@ -44,17 +44,18 @@ std::vector<Neighbour> neighbours(const std::vector<Pose2>& poses, const Refinem
 }  // namespace
 
 RefinedMap refine_map(const std::vector<std::shared_ptr<const ScanView>>& views, std::vector<Pose2> map_from_node,
-                      const std::vector<PoseConstraint>& chain, const MatchSearchOptions& search,
-                      const RefinementOptions& options, int threads, RunObserver& observer) {
+                      const std::vector<PoseConstraint>& odometry, const MapRefinement& how,
+                      const Execution& execution) {
+  const RefinementOptions& options = how.refinement;
   const PoseTolerance most_off{options.most_off_m, options.most_off_rad};
   RefinedMap map;
-  for (int round = 0; round < options.rounds && observer.keep_going(); ++round) {
+  for (int round = 0; round < options.rounds && execution.observer.keep_going(); ++round) {
     const std::vector<Neighbour> pairs = neighbours(map_from_node, options);
     std::vector<std::optional<PoseConstraint>> found(pairs.size());
-    parallel_for(pairs.size(), threads, [&](std::size_t i) {
+    parallel_for(pairs.size(), execution.threads, [&](std::size_t i) {
       const auto [a, b, unused] = pairs[i];
       const Pose2 expected = inverse(map_from_node[a]) * map_from_node[b];
-      const MatchCandidate pose = refined_candidate(*views[a], *views[b], expected, search);
+      const MatchCandidate pose = refined_candidate(*views[a], *views[b], expected, how.search);
       const double agree = pose.visibility.agree / std::max(pose.visibility.total(), 1e-9);
       if (agree < options.least_agree || !agrees(expected, pose.ref_from_query, most_off)) return;
       found[i] = PoseConstraint{a, b, pose.ref_from_query, pose_covariance(pose.fit), kInference.refinement.loss};
@@ -63,7 +64,7 @@ RefinedMap refine_map(const std::vector<std::shared_ptr<const ScanView>>& views,
     for (const auto& constraint : found) {
       if (constraint) map.neighbours.push_back(*constraint);
     }
-    std::vector<PoseConstraint> constraints = chain;
+    std::vector<PoseConstraint> constraints = odometry;
     for (PoseConstraint& edge : constraints) edge.loss_scale = kInference.refinement.loss;
     constraints.insert(constraints.end(), map.neighbours.begin(), map.neighbours.end());
     map_from_node = solve_pose_graph(map_from_node, constraints).map_from_node;

@@ -48,16 +48,15 @@ MapHypothesis waited_for(std::future<MapHypothesis>& result, StopSign& stop) {
   return result.get();
 }
 
-/// The best of some maps that are assembled of pieces; no more are tried when several in a row are no better.
-MapHypothesis assembled(MapObjective& problem, const std::vector<Edge>& edges,
-                        const std::vector<EdgeCandidate>& candidates, const std::vector<Pose2>& map_of_odometry,
-                        const MapSearchOptions& options, RunObserver& observer) {
+/// The best of some maps that submaps are merged to; no more are tried when several in a row are no better.
+MapHypothesis merged(MapObjective& problem, const GraphEvidence& evidence, const std::vector<Pose2>& map_of_odometry,
+                     const MapSearchOptions& options, RunObserver& observer) {
   MapHypothesis best;
   int in_vain = 0;
   for (int variant = 0; variant < options.assemblies && in_vain < kInference.search.assemblies_in_vain; ++variant) {
     if (variant > 0 && !observer.keep_going()) break;
-    MapHypothesis trial =
-        problem.of_map(merged_submaps(edges, candidates, map_of_odometry, problem.score(), options, variant, observer));
+    MapHypothesis trial = problem.of_map(
+        merged_submaps({evidence.edges, evidence.loops, map_of_odometry}, problem.score(), options, variant, observer));
     const double least_gain = std::max(options.least_gain, kInference.search.least_gain_share * std::abs(best.value));
     const bool is_better = variant == 0 || trial.value > best.value + least_gain;
     in_vain = is_better ? 0 : in_vain + 1;
@@ -68,14 +67,13 @@ MapHypothesis assembled(MapObjective& problem, const std::vector<Edge>& edges,
 
 }  // namespace
 
-MapSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<Edge>& edges,
-                        const std::vector<EdgeCandidate>& candidates, const std::vector<LoopCluster>& clusters,
-                        const VisibilityOptions& visibility, const MapSearchOptions& options, int threads,
-                        RunObserver& observer) {
-  // Each has evidence of its own, so that neither depends on how far the other has come.
-  MapObjective of_chain(views, edges, clusters, visibility, options, 1);
-  MapObjective problem(views, edges, clusters, visibility, options, threads);
-  StopSign stop(observer);
+MapSolution search_map(const GraphEvidence& evidence, const VisibilityOptions& visibility,
+                       const MapSearchOptions& options, const Execution& execution) {
+  const std::vector<LoopCluster>& clusters = evidence.clusters;
+  // Each objective has a score of its own, so that neither depends on how far the other has come.
+  MapObjective of_chain(evidence, visibility, options, 1);
+  MapObjective problem(evidence, visibility, options, execution.threads);
+  StopSign stop(execution.observer);
   const MapHypothesis chain = of_chain.chain_alone();
   const auto closed_chain = [&](RunObserver& asked) {
     MapHypothesis closed = chain;
@@ -85,18 +83,18 @@ MapSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& view
   StopSign::Reader reader(stop);
   std::future<MapHypothesis> meanwhile;
   try {
-    if (threads != 1) meanwhile = std::async(std::launch::async, closed_chain, std::ref(reader));
+    if (execution.threads != 1) meanwhile = std::async(std::launch::async, closed_chain, std::ref(reader));
   } catch (const std::system_error&) {
     // No thread is to be had: it is done afterwards.
   }
   LoopMoves closer(problem, clusters, options, stop);
-  MapHypothesis best = assembled(problem, edges, candidates, chain.map_from_node, options, stop);
+  MapHypothesis best = merged(problem, evidence, chain.map_from_node, options, stop);
   closer.close(best);
   MapHypothesis other = meanwhile.valid() ? waited_for(meanwhile, stop) : closed_chain(stop);
   if (other.value > best.value) best = std::move(other);
-  EdgeMoves(problem, closer, edges, clusters, options, stop).repair(best);
+  EdgeMoves(problem, closer, evidence, options, stop).repair(best);
   MapSolution solution;
-  solution.component = connected_components(views.size(), problem.constraints(best));
+  solution.component = connected_components(evidence.views.size(), problem.constraints(best));
   for (std::size_t k = 0; k < clusters.size(); ++k) {
     if (best.accepted[k]) solution.accepted.push_back(k);
   }

@@ -109,7 +109,7 @@ OptimizedMap optimized_map(const KeyframeGraph& graph, const std::vector<EdgeCan
       loop_clusters(candidates, map.map_from_keyframe, trusted_submaps(edges), kLoops.clusters);
   const VisibilityOptions& visibility = options.matcher.search.visibility;
   const MapSolution solution =
-      close_loops(views, edges, candidates, clusters, visibility, options.map_search, execution.threads, observer);
+      search_map({views, edges, candidates, clusters}, visibility, options.map_search, execution);
   for (std::size_t i = 0; i < edges.size(); ++i) {
     const int rank = solution.edge_choice[i];
     map.edge_choice[i] =
@@ -119,8 +119,8 @@ OptimizedMap optimized_map(const KeyframeGraph& graph, const std::vector<EdgeCan
   find_parts(graph, loops, improbable, options, map);
   map.constraints = edge_constraints(graph, map.edge_choice);
   map.constraints.insert(map.constraints.end(), loops.begin(), loops.end());
-  RefinedMap refined = refine_map(views, solution.map_from_node, map.constraints, options.matcher.search,
-                                  options.refinement, execution.threads, observer);
+  RefinedMap refined = refine_map(views, solution.map_from_node, map.constraints,
+                                  {options.matcher.search, options.refinement}, execution);
   map.map_from_keyframe = std::move(refined.map_from_node);
   map.constraints.insert(map.constraints.end(), refined.neighbours.begin(), refined.neighbours.end());
   std::vector<char> is_accepted(clusters.size(), 0);

@@ -264,12 +264,11 @@ class Assembly {
 
 }  // namespace
 
-std::vector<Pose2> merged_submaps(const std::vector<Edge>& edges, const std::vector<EdgeCandidate>& candidates,
-                                  std::vector<Pose2> map_of_odometry, MapScore& score, const MapSearchOptions& options,
+std::vector<Pose2> merged_submaps(const SubmapEvidence& evidence, MapScore& score, const MapSearchOptions& options,
                                   int variant, RunObserver& observer) {
-  if (map_of_odometry.size() < 2) return map_of_odometry;
-  Assembly assembly(edges, std::move(map_of_odometry), score, options);
-  assembly.add_joints(candidates);
+  if (evidence.map_of_odometry.size() < 2) return evidence.map_of_odometry;
+  Assembly assembly(evidence.edges, evidence.map_of_odometry, score, options);
+  assembly.add_joints(evidence.loops);
   assembly.disturb(variant);
   return assembly.run(observer);
 }

@@ -21,9 +21,9 @@ SweepCorrections refine_sweeps_of_map(const KeyframeGraph& graph, const RobustOp
       views.push_back(keyframe.sweep_views);
     }
   }
-  SweepPoses poses =
-      refine_sweeps(views, map.map_from_keyframe, map.component, edge_constraints(graph, map.edge_choice),
-                    options.matcher.search.line, options.sweep_refinement, execution.threads, execution.observer);
+  const std::vector<PoseConstraint> known = edge_constraints(graph, map.edge_choice);
+  SweepPoses poses = refine_sweeps(views, {map.map_from_keyframe, map.component, known}, options.matcher.search.line,
+                                   options.sweep_refinement, execution);
   map.map_from_keyframe = std::move(poses.map_from_node);
   return std::move(poses.node_from_sweep);
 }

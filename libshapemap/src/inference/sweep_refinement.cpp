@@ -15,17 +15,16 @@ namespace {
 
 class Refinement {
  public:
-  Refinement(const SweepViews& views, const std::vector<Pose2>& map_from_node,
-             const std::vector<std::size_t>& part_of_node, const PointToLineOptions& line,
+  Refinement(const SweepViews& views, const NodePoses& nodes, const PointToLineOptions& line,
              const SweepRefinementOptions& options, int threads)
-      : views_(views), part_of_node_(part_of_node), line_(line), options_(options), threads_(threads) {
+      : views_(views), part_of_node_(nodes.component_of_node), line_(line), options_(options), threads_(threads) {
     // All poses are solved for at once: a step of a single pair goes no farther than its lines.
     line_.max_iterations = 1;
     line_.stiffness = kInference.sweeps.stiffness;
-    poses_ = map_from_node;
+    poses_ = nodes.map_from_node;
     for (std::size_t node = 0; node < views.size(); ++node) {
       first_.push_back(poses_.size());
-      poses_.insert(poses_.end(), views[node].size(), map_from_node[node]);
+      poses_.insert(poses_.end(), views[node].size(), nodes.map_from_node[node]);
     }
     tie_sweeps();
   }
@@ -136,13 +135,11 @@ class Refinement {
 
 }  // namespace
 
-SweepPoses refine_sweeps(const SweepViews& views, const std::vector<Pose2>& map_from_node,
-                         const std::vector<std::size_t>& part_of_node, const std::vector<PoseConstraint>& known,
-                         const PointToLineOptions& line, const SweepRefinementOptions& options, int threads,
-                         RunObserver& observer) {
-  Refinement refinement(views, map_from_node, part_of_node, line, options, threads);
-  refinement.hold(known);
-  for (int round = 0; round < options.rounds && observer.keep_going(); ++round) refinement.run_round(round);
+SweepPoses refine_sweeps(const SweepViews& views, const NodePoses& nodes, const PointToLineOptions& line,
+                         const SweepRefinementOptions& options, const Execution& execution) {
+  Refinement refinement(views, nodes, line, options, execution.threads);
+  refinement.hold(nodes.known);
+  for (int round = 0; round < options.rounds && execution.observer.keep_going(); ++round) refinement.run_round(round);
   return refinement.result();
 }
 

@@ -226,7 +226,7 @@ def grid_figure(runs: Runs) -> Figure:
     height, width = run.grey.shape
     low, high = run.origin_m, run.origin_m + run.resolution_m * np.array([width, height])
     figure, panels = new_panels(1, 2, panel=(5.0, 3.8))
-    against = [s["index"] for s in run.report["scans"] if (s["agreement"] or {}).get("contradicts_map")]
+    against = [s["index"] for s in run.report["scans"] if (s["consistency"] or {}).get("contradicts_map")]
     for axes in panels:
         axes.imshow(run.grey, cmap="gray", vmin=0, vmax=255, extent=(low[0], high[0], low[1], high[1]))
     dots(panels[0], places(run.trace), "tab:blue", size=6)

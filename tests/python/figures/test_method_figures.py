@@ -46,7 +46,7 @@ for i, pose in enumerate(poses):
         "robot_from_sub_scan": [[0, 0, 0]]})
 records.append({"record": "end", "num_positions": 4, "num_placed": 4, "largest_fragment": 0})
 open(option("--trace"), "w").write("".join(json.dumps(r) + "\\n" for r in records))
-scans = [{"index": i, "is_keyframe": i != 1, "agreement": {"contradicts_map": i == 3},
+scans = [{"index": i, "is_keyframe": i != 1, "consistency": {"contradicts_map": i == 3},
           "alignment": {"reference": i - 1, "covariance": covariance} if i else None} for i in range(4)]
 open(option("--report"), "w").write(json.dumps({"positions": scans, "loops": [{"a": 0, "b": 3}]}))
 open(option("--out"), "wb").write(b"P5\\n40 30\\n255\\n" + bytes(1200))

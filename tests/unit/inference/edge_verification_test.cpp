@@ -50,7 +50,7 @@ struct Torn {
 
   VerifiedMap verified(double least_probability = 0.7, int threads = 1) {
     RunObserver nobody;
-    return verify_edges(views, poses, submaps, doubts, {}, least_probability, threads, nobody);
+    return verify_edges(views, {poses, submaps}, doubts, {{}, least_probability}, {threads, nobody});
   }
 
   std::vector<Pose2> truth;
@@ -248,7 +248,7 @@ TEST(VerifyEdges, StopsBetweenTwoLinksThatContradictEachOther) {
   map.doubts[1].candidates.pop_back();
   const auto chosen = [&](int asked) {
     StopsAfter observer(asked);
-    return choices(verify_edges(map.views, map.poses, map.submaps, map.doubts, {}, 0.7, 1, observer));
+    return choices(verify_edges(map.views, {map.poses, map.submaps}, map.doubts, {{}, 0.7}, {1, observer}));
   };
   EXPECT_THAT(chosen(0), ElementsAre(0, 0));
   EXPECT_THAT(chosen(1), ElementsAre(1, kCut));
@@ -277,7 +277,7 @@ TEST(VerifyEdges, LeavesAllAsItWasWhenAskedToStop) {
   } impatient;
   Torn map({6});
   map.doubts[0].candidates.push_back(scored(map.true_step(6), 0.0));
-  const VerifiedMap verified = verify_edges(map.views, map.poses, map.submaps, map.doubts, {}, 0.7, 1, impatient);
+  const VerifiedMap verified = verify_edges(map.views, {map.poses, map.submaps}, map.doubts, {{}, 0.7}, {1, impatient});
   EXPECT_THAT(choices(verified), ElementsAre(0));
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.poses), 1e-6);
 }

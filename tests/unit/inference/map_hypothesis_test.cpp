@@ -20,7 +20,7 @@ using ::testing::ElementsAre;
 struct Ring {
   explicit Ring(double drift_rad = 0.0) : edges(test::drifting_edges(truth, drift_rad)) {}
 
-  MapObjective problem() { return {views, edges, clusters, {}, options, 1}; }
+  MapObjective problem() { return {GraphEvidence{views, edges, {}, clusters}, {}, options, 1}; }
 
   void spoil(std::size_t edge, bool keep_right) {
     std::vector<EdgeCandidate>& candidates = edges[edge].candidates;

@@ -25,7 +25,7 @@ struct Blurred {
 
   std::vector<Pose2> refined(const RefinementOptions& options, int threads = 1) const {
     RunObserver observer;
-    return refine_map(views, poses, chain, {}, options, threads, observer).map_from_node;
+    return refine_map(views, poses, chain, {{}, options}, {threads, observer}).map_from_node;
   }
 
   std::vector<Pose2> truth = test::ring_walk(25, 2);

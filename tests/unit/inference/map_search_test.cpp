@@ -38,7 +38,7 @@ struct Ring {
   }
 
   MapSolution closed(const std::vector<LoopCluster>& clusters, RunObserver& observer, int threads = 1) const {
-    return close_loops(views, edges, {}, clusters, {}, {}, threads, observer);
+    return search_map({views, edges, {}, clusters}, {}, {}, {threads, observer});
   }
   MapSolution closed(const std::vector<LoopCluster>& clusters, int threads = 1) const {
     RunObserver nobody;
@@ -61,7 +61,7 @@ void expect_same_bits(const MapSolution& a, const MapSolution& b) {
   EXPECT_EQ(a.value, b.value);
 }
 
-TEST(CloseLoops, WithoutLoopsLeavesTheChainAsItIs) {
+TEST(SearchMap, WithoutLoopsLeavesTheChainAsItIs) {
   const Ring ring;
   const MapSolution solution = ring.closed({});
   EXPECT_THAT(solution.accepted, IsEmpty());
@@ -73,7 +73,7 @@ TEST(CloseLoops, WithoutLoopsLeavesTheChainAsItIs) {
   }
 }
 
-TEST(CloseLoops, ClosesARingThatHasDriftedApart) {
+TEST(SearchMap, ClosesARingThatHasDriftedApart) {
   const Ring ring;
   ASSERT_GT(test::worst_off_m(test::dead_reckoning(ring.edges), ring.truth), 1.5);
   const MapSolution solution = ring.closed({ring.again(12.0)});
@@ -84,7 +84,7 @@ TEST(CloseLoops, ClosesARingThatHasDriftedApart) {
   EXPECT_GT(solution.value, ring.closed({}).value);
 }
 
-TEST(CloseLoops, RefusesALoopThatIsWrongHoweverStrong) {
+TEST(SearchMap, RefusesALoopThatIsWrongHoweverStrong) {
   const Ring ring;
   const MapSolution alone = ring.closed({ring.wrong(18.0)});
   EXPECT_THAT(alone.accepted, IsEmpty());
@@ -95,7 +95,7 @@ TEST(CloseLoops, RefusesALoopThatIsWrongHoweverStrong) {
 }
 
 /// The graph could bear it; the scans speak against it.
-TEST(CloseLoops, RefusesALoopThatPullsScansThatAgreeApart) {
+TEST(SearchMap, RefusesALoopThatPullsScansThatAgreeApart) {
   Ring ring(0.0);
   for (Edge& edge : ring.edges) edge.candidates[0].covariance = test::covariance_of(0.3, 10 * kDegree);
   const auto shifted_by = [&](double shift_m) {
@@ -105,12 +105,12 @@ TEST(CloseLoops, RefusesALoopThatPullsScansThatAgreeApart) {
   EXPECT_THAT(ring.closed({shifted_by(0.0)}).accepted, ElementsAre(0));
 }
 
-TEST(CloseLoops, LeavesAloneWhatIsTooWeak) {
+TEST(SearchMap, LeavesAloneWhatIsTooWeak) {
   const Ring ring;
   EXPECT_THAT(ring.closed({ring.again(1.0)}).accepted, IsEmpty());
 }
 
-TEST(CloseLoops, TakesTheOtherAlternativeOfALinkThatLoopsContradict) {
+TEST(SearchMap, TakesTheOtherAlternativeOfALinkThatLoopsContradict) {
   Ring ring(0.1 * kDegree);
   constexpr std::size_t kBad = 20;
   Edge& bad = ring.edges[kBad];
@@ -125,7 +125,7 @@ TEST(CloseLoops, TakesTheOtherAlternativeOfALinkThatLoopsContradict) {
   EXPECT_LT(test::worst_off_m(solution.map_from_node, ring.truth), kGood_m);
 }
 
-TEST(CloseLoops, CutsALinkThatIsWrongWithoutAnAlternative) {
+TEST(SearchMap, CutsALinkThatIsWrongWithoutAnAlternative) {
   Ring ring(0.05 * kDegree);
   constexpr std::size_t kBad = 20;
   Edge& bad = ring.edges[kBad];
@@ -152,7 +152,7 @@ void turn_node(Ring& ring, std::size_t node) {
   }
 }
 
-TEST(CloseLoops, TakesTwoAlternativesThatOnlyTogetherAreBetter) {
+TEST(SearchMap, TakesTwoAlternativesThatOnlyTogetherAreBetter) {
   Ring ring(0.1 * kDegree);
   turn_node(ring, 20);
   const MapSolution solution = ring.closed({ring.again(12.0)});
@@ -164,7 +164,7 @@ TEST(CloseLoops, TakesTwoAlternativesThatOnlyTogetherAreBetter) {
 }
 
 /// Several links are wrong; hypotheses that no cluster holds bridge those that have no other alternative.
-TEST(CloseLoops, IsAtLeastAsGoodWithHypothesesAsWithout) {
+TEST(SearchMap, IsAtLeastAsGoodWithHypothesesAsWithout) {
   RunObserver nobody;
   double gained = 0.0;
   for (std::size_t bad = 8; bad <= 40; bad += 8) {
@@ -175,7 +175,7 @@ TEST(CloseLoops, IsAtLeastAsGoodWithHypothesesAsWithout) {
     ring.edges[bad].probability = 0.3;
     const std::vector<LoopCluster> clusters{test::cluster_of(ring.truth, {bad - 1, bad + 1, 2}, 8.0)};
     const auto closed = [&](const std::vector<EdgeCandidate>& candidates) {
-      return close_loops(ring.views, ring.edges, candidates, clusters, {}, {}, 1, nobody);
+      return search_map({ring.views, ring.edges, candidates, clusters}, {}, {}, {1, nobody});
     };
     const MapSolution with = closed(clusters[0].members);
     const MapSolution without = closed({});
@@ -199,7 +199,7 @@ struct TwoWalks {
 
   MapSolution closed(const std::vector<LoopCluster>& clusters) const {
     RunObserver nobody;
-    return close_loops(views, edges, {}, clusters, {}, {}, 1, nobody);
+    return search_map({views, edges, {}, clusters}, {}, {}, {1, nobody});
   }
 
   static constexpr std::size_t kFirst = 16;
@@ -208,7 +208,7 @@ struct TwoWalks {
   std::vector<Edge> edges;
 };
 
-TEST(CloseLoops, JoinsTwoPiecesOfOneWorld) {
+TEST(SearchMap, JoinsTwoPiecesOfOneWorld) {
   const TwoWalks walks(true);
   const MapSolution solution = walks.closed({test::cluster_of(walks.truth, {3, TwoWalks::kFirst, 8}, 24.0)});
   EXPECT_THAT(solution.accepted, ElementsAre(0));
@@ -217,7 +217,7 @@ TEST(CloseLoops, JoinsTwoPiecesOfOneWorld) {
   EXPECT_LT(test::worst_off_m(solution.map_from_node, walks.truth), kGood_m);
 }
 
-TEST(CloseLoops, KeepsTwoWorldsApart) {
+TEST(SearchMap, KeepsTwoWorldsApart) {
   const TwoWalks walks(false);
   const LoopCluster wrong = test::cluster_of(walks.truth, {3, TwoWalks::kFirst, 8}, 8.0);
   for (const MapSolution& solution : {walks.closed({}), walks.closed({wrong})}) {
@@ -231,13 +231,13 @@ TEST(CloseLoops, KeepsTwoWorldsApart) {
   }
 }
 
-TEST(CloseLoops, DoesNotJoinPiecesByAWeakLoop) {
+TEST(SearchMap, DoesNotJoinPiecesByAWeakLoop) {
   const TwoWalks walks(true);
   const LoopCluster weak = test::cluster_of(walks.truth, {3, TwoWalks::kFirst, 8}, 12.0);
   EXPECT_THAT(walks.closed({weak}).accepted, IsEmpty());
 }
 
-TEST(CloseLoops, DoesNotJoinPiecesThatTwoLoopsWouldJoinDifferently) {
+TEST(SearchMap, DoesNotJoinPiecesThatTwoLoopsWouldJoinDifferently) {
   const TwoWalks walks(true);
   LoopCluster right = test::cluster_of(walks.truth, {3, TwoWalks::kFirst, 8}, 24.0);
   LoopCluster rival = right;
@@ -248,7 +248,7 @@ TEST(CloseLoops, DoesNotJoinPiecesThatTwoLoopsWouldJoinDifferently) {
   EXPECT_THAT(walks.closed({right, rival}).accepted, IsEmpty());
 }
 
-TEST(CloseLoops, StoppedAtAnyTimeHasAWholeSolution) {
+TEST(SearchMap, StoppedAtAnyTimeHasAWholeSolution) {
   Ring ring;
   ring.edges[20].probability = 0.4;
   ring.edges[20].candidates.push_back(ring.edges[20].candidates[0]);
@@ -273,7 +273,7 @@ TEST(CloseLoops, StoppedAtAnyTimeHasAWholeSolution) {
   expect_same_bits(ring.closed(clusters, just_enough), whole);
 }
 
-TEST(CloseLoops, IsTheSameToTheBitForAnyNumberOfThreads) {
+TEST(SearchMap, IsTheSameToTheBitForAnyNumberOfThreads) {
   const Ring ring;
   const std::vector<LoopCluster> clusters{ring.wrong(14.0), ring.again(12.0)};
   expect_same_bits(ring.closed(clusters, 3), ring.closed(clusters, 1));
@@ -290,7 +290,7 @@ struct AskedByOne : RunObserver {
   bool is_same = true;
 };
 
-TEST(CloseLoops, AsksTheObserverFromOneThread) {
+TEST(SearchMap, AsksTheObserverFromOneThread) {
   const Ring ring;
   AskedByOne observer;
   ring.closed({ring.wrong(14.0), ring.again(12.0)}, observer, 3);
@@ -298,10 +298,10 @@ TEST(CloseLoops, AsksTheObserverFromOneThread) {
   EXPECT_TRUE(observer.is_same);
 }
 
-TEST(CloseLoops, OfOneNodeIsThatNode) {
+TEST(SearchMap, OfOneNodeIsThatNode) {
   RunObserver nobody;
   const test::Views views = test::views_along(test::ring_world(1), test::ring_walk(1, 1));
-  const MapSolution solution = close_loops(views, {}, {}, {}, {}, {}, 1, nobody);
+  const MapSolution solution = search_map({views, {}, {}, {}}, {}, {}, {1, nobody});
   ASSERT_EQ(solution.map_from_node.size(), 1U);
   EXPECT_THAT(solution.map_from_node[0], HasSameBits(Pose2{}));
   EXPECT_THAT(solution.component, ElementsAre(0));

@@ -45,7 +45,7 @@ struct Walk {
   std::vector<Pose2> assembled(const std::vector<EdgeCandidate>& candidates, RunObserver& observer, int variant = 0,
                                int threads = 1) const {
     MapScore score(views, {}, threads);
-    return merged_submaps(edges, candidates, chain(), score, {}, variant, observer);
+    return merged_submaps({edges, candidates, chain()}, score, {}, variant, observer);
   }
   std::vector<Pose2> assembled(const std::vector<EdgeCandidate>& candidates = {}, int variant = 0,
                                int threads = 1) const {
@@ -247,8 +247,8 @@ TEST(AssembledMap, StoppedAtAnyTimeHasTheRestFromTheChain) {
 TEST(AssembledMap, OfOneNodeOrNoneIsThat) {
   RunObserver nobody;
   MapScore score(test::views_along(test::ring_world(1), test::ring_walk(1, 1)), {}, 1);
-  EXPECT_TRUE(merged_submaps({}, {}, {}, score, {}, 0, nobody).empty());
-  const std::vector<Pose2> one = merged_submaps({}, {}, {{1.0, 2.0, 3.0}}, score, {}, 1, nobody);
+  EXPECT_TRUE(merged_submaps({{}, {}, {}}, score, {}, 0, nobody).empty());
+  const std::vector<Pose2> one = merged_submaps({{}, {}, {{1.0, 2.0, 3.0}}}, score, {}, 1, nobody);
   ASSERT_EQ(one.size(), 1U);
   EXPECT_THAT(one[0], HasSameBits(Pose2{1.0, 2.0, 3.0}));
 }

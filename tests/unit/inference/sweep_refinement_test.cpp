@@ -26,7 +26,7 @@ struct Survey {
 
   SweepPoses refined(const SweepRefinementOptions& options = {}, int threads = 1) const {
     RunObserver observer;
-    return refine_sweeps(views, start, parts, {}, {}, options, threads, observer);
+    return refine_sweeps(views, {start, parts, {}}, {}, options, {threads, observer});
   }
 
   test::Stops stops = test::stops_on_ring(8, 1.2, 3, 0.02, 2 * kDegree);

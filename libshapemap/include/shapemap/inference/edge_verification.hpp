@@ -43,6 +43,18 @@ struct VerifiedMap {
   std::vector<VerifiedEdge> edges;          ///< per doubtful link
 };
 
+/// A map in submaps, each right in itself.
+struct SubmapPoses {
+  std::vector<Pose2> map_from_node;
+  std::vector<std::size_t> submap_of_node;  ///< a number that the nodes of a submap share
+};
+
+/// How edges are verified.
+struct EdgeVerification {
+  const VisibilityOptions& visibility;
+  double least_probability = 0.0;  ///< less probable edges do not join submaps
+};
+
 /// Joins the pieces (nodes with the same `submap_of_node`, right to each other) at the doubtful links, the most
 /// probable first. A candidate is worth its own score and what all pairs of scans of the two pieces then say
 /// (MapScore), as far as they are near each other along the chain, less where its two scans hold it in no direction,
@@ -50,11 +62,9 @@ struct VerifiedMap {
 /// walks by, all others speak against the place, but the way there and back may be known. From that follows how
 /// probable each place is, and that it is none of them (multinomial logit), the more so the less the two scans see. A
 /// place that the best only slides to, along a corridor, counts for it in part. What is less probable than
-/// `least_probability` is not joined; parallel links that say what was joined are joined with it, as probable as it.
-/// Stops early, with the rest of the links as they were, when the observer asks to.
-VerifiedMap verify_edges(const NodeViews& views, std::vector<Pose2> map_from_node,
-                         std::vector<std::size_t> submap_of_node, const std::vector<Edge>& doubtful,
-                         const VisibilityOptions& visibility, double least_probability, int threads,
-                         RunObserver& observer);
+/// EdgeVerification::least_probability is not joined; parallel links that say what was joined are joined with it, as
+/// probable as it. Stops early, with the rest of the links as they were, when the observer asks to.
+VerifiedMap verify_edges(const NodeViews& views, SubmapPoses submaps, const std::vector<Edge>& doubtful,
+                         const EdgeVerification& options, const Execution& execution);
 
 }  // namespace shapemap

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "shapemap/core/observer.hpp"
+#include "shapemap/core/execution.hpp"
 #include "shapemap/core/options.hpp"
 #include "shapemap/graph/pose_graph.hpp"
 #include "shapemap/matching/match_search.hpp"
@@ -37,10 +37,17 @@ struct RefinedMap {
   std::vector<PoseConstraint> neighbours;  ///< the alignments that it was last solved with, beside the chain
 };
 
-/// Aligns all scans that see the same from where the map has them, beside `chain`, and solves for all of it; several
-/// times, since what is nearer to right aligns better. Stops between two times when the observer asks to.
+/// How scans are matched while a map is refined.
+struct MapRefinement {
+  const MatchSearchOptions& search;
+  const RefinementOptions& refinement;
+};
+
+/// Matches all scans that see the same from where the map has them, beside the constraints `odometry`, and solves for
+/// all of it; several times, since what is nearer to right matches better. It stops between two times when the observer
+/// asks to.
 RefinedMap refine_map(const std::vector<std::shared_ptr<const ScanView>>& views, std::vector<Pose2> map_from_node,
-                      const std::vector<PoseConstraint>& chain, const MatchSearchOptions& search,
-                      const RefinementOptions& options, int threads, RunObserver& observer);
+                      const std::vector<PoseConstraint>& odometry, const MapRefinement& options,
+                      const Execution& execution);
 
 }  // namespace shapemap

@@ -6,10 +6,11 @@
 #include <memory>
 #include <vector>
 
-#include "shapemap/core/observer.hpp"
+#include "shapemap/core/execution.hpp"
 #include "shapemap/core/options.hpp"
 #include "shapemap/graph/edge.hpp"
 #include "shapemap/loops/loop_clusters.hpp"
+#include "shapemap/loops/loop_detection.hpp"
 #include "shapemap/matching/visibility.hpp"
 
 /// Which loops are real, and which of its alternatives each doubtful alignment of the chain takes.
@@ -49,14 +50,20 @@ struct MapSolution {
 };
 inline constexpr int kCut = -1;
 
-/// `links[i]` joins node i to node i + 1. The value of a map is the logarithm of its odds: of the loops that it closes,
-/// of the alternatives that it takes, of how well the scans then go together (MapScore), less half of the squared
-/// errors of the pose graph. Loops that gain are closed, strongest first; then what contradicts the map is looked into:
-/// a strong loop that does not fit, or a doubtful alignment, may show that another alignment is wrong, or a loop.
-/// Stops early with what there is when the observer asks to.
-MapSolution close_loops(const std::vector<std::shared_ptr<const ScanView>>& views, const std::vector<Edge>& edges,
-                        const std::vector<EdgeCandidate>& candidates, const std::vector<LoopCluster>& clusters,
-                        const VisibilityOptions& visibility, const MapSearchOptions& options, int threads,
-                        RunObserver& observer);
+/// What is known of a graph before its map is searched for.
+struct GraphEvidence {
+  const NodeViews& views;          ///< of each node
+  const std::vector<Edge>& edges;  ///< edge i joins node i to node i + 1
+  const std::vector<EdgeCandidate>& loops;
+  const std::vector<LoopCluster>& clusters;  ///< the loops that say the same, strongest first
+};
+
+/// Searches for the map with the largest value. The value of a map is the logarithm of its odds: of the loops that it
+/// closes, of the candidates that it takes, of how well the scans then go together (MapScore), less half of the squared
+/// errors of the pose graph. Loops that gain are closed, strongest first. Then the search looks into what contradicts
+/// the map: a strong loop that does not fit, or a doubtful edge, may show that another edge is wrong, or a loop. The
+/// search stops early, with what there is, when the observer asks to.
+MapSolution search_map(const GraphEvidence& evidence, const VisibilityOptions& visibility,
+                       const MapSearchOptions& options, const Execution& execution);
 
 }  // namespace shapemap

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "shapemap/core/observer.hpp"
+#include "shapemap/core/execution.hpp"
 #include "shapemap/core/options.hpp"
 #include "shapemap/graph/pose_graph.hpp"
 #include "shapemap/matching/point_to_line.hpp"
@@ -52,13 +52,17 @@ struct SweepPoses {
   std::vector<std::vector<Pose2>> node_from_sweep;  ///< corrections: without an error, all are the identity
 };
 
-/// Gives each sub-scan a pose of its own, tied to its nominal place in its node, and aligns it to all sub-scans of near
-/// nodes of the same part that share what they see; several times. A node is where its sub-scans say in the mean, as
-/// their errors do not depend on each other. `known` holds nodes where sub-scans do not. Stops between two rounds when
-/// the observer asks to.
-SweepPoses refine_sweeps(const SweepViews& views, const std::vector<Pose2>& map_from_node,
-                         const std::vector<std::size_t>& part_of_node, const std::vector<PoseConstraint>& known,
-                         const PointToLineOptions& line, const SweepRefinementOptions& options, int threads,
-                         RunObserver& observer);
+/// Where the nodes are, and what holds them there.
+struct NodePoses {
+  const std::vector<Pose2>& map_from_node;
+  const std::vector<std::size_t>& component_of_node;
+  const std::vector<PoseConstraint>& known;  ///< holds nodes where sweeps do not
+};
+
+/// Gives each sweep a pose of its own, tied to its nominal place in its node, and matches it to all sweeps of near
+/// nodes of the same component that share what they see; several times. A node is where its sweeps say in the mean, as
+/// their errors do not depend on each other. It stops between two rounds when the observer asks to.
+SweepPoses refine_sweeps(const SweepViews& views, const NodePoses& nodes, const PointToLineOptions& line,
+                         const SweepRefinementOptions& options, const Execution& execution);
 
 }  // namespace shapemap
