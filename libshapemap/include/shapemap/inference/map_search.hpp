@@ -13,7 +13,7 @@
 #include "shapemap/loops/loop_detection.hpp"
 #include "shapemap/matching/visibility.hpp"
 
-/// Which loops are real, and which of its alternatives each doubtful alignment of the chain takes.
+/// The map search decides which loops are closed, and which candidate each doubtful odometry edge takes.
 namespace shapemap {
 
 struct MapSearchOptions {
@@ -40,17 +40,17 @@ struct MapSearchOptions {
   }
 };
 
-/// The map that all scans go together best in.
+/// The map with the largest value that was found.
 struct MapSolution {
   std::vector<Pose2> map_from_node;
-  std::vector<int> edge_choice;        ///< per link: which alternative; kCut: none, where loops tell better
-  std::vector<std::size_t> accepted;   ///< clusters that are closed, in their order
-  std::vector<std::size_t> component;  ///< per node: the first node of all that it hangs together with
-  double value = 0.0;                  ///< logarithm of odds of all of it, up to a constant
+  std::vector<int> edge_choice;        ///< of each edge: its candidate, or kCut where loops tell better
+  std::vector<std::size_t> accepted;   ///< indices of the closed clusters, in order
+  std::vector<std::size_t> component;  ///< of each node: the first node of its component
+  double value = 0.0;                  ///< log odds of the map, up to a constant
 };
 inline constexpr int kCut = -1;
 
-/// What is known of a graph before its map is searched for.
+/// The evidence about a graph before its map is searched.
 struct GraphEvidence {
   const NodeViews& views;          ///< of each node
   const std::vector<Edge>& edges;  ///< edge i joins node i to node i + 1
