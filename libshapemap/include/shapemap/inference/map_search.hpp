@@ -55,14 +55,14 @@ struct GraphEvidence {
   const NodeViews& views;          ///< of each node
   const std::vector<Edge>& edges;  ///< edge i joins node i to node i + 1
   const std::vector<EdgeCandidate>& loops;
-  const std::vector<LoopCluster>& clusters;  ///< the loops that say the same, strongest first
+  const std::vector<LoopCluster>& clusters;  ///< loops that agree, strongest cluster first
 };
 
-/// Searches for the map with the largest value. The value of a map is the logarithm of its odds: of the loops that it
-/// closes, of the candidates that it takes, of how well the scans then go together (MapScore), less half of the squared
-/// errors of the pose graph. Loops that gain are closed, strongest first. Then the search looks into what contradicts
-/// the map: a strong loop that does not fit, or a doubtful edge, may show that another edge is wrong, or a loop. The
-/// search stops early, with what there is, when the observer asks to.
+/// Searches for the map with the largest value. The value of a map is the logarithm of its odds. It adds up the worth
+/// of the closed loops and how well the scans fit each other (MapScore), less the cost of unlikely candidates and half
+/// of the squared errors of the pose graph. Loops that raise the value are closed, strongest first. Then the search
+/// looks into contradictions: a strong loop that does not fit, or a doubtful edge, may show that another edge or loop
+/// is wrong. When the observer asks to stop, the best map so far is returned.
 MapSolution search_map(const GraphEvidence& evidence, const VisibilityOptions& visibility,
                        const MapSearchOptions& options, const Execution& execution);
 
