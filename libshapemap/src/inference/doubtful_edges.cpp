@@ -113,7 +113,7 @@ class DoubtfulEdges {
     return in_order;
   }
 
-  /// Finds the edges, cut or not, that join submaps which neither sure edges nor sure loops join.
+  /// Finds the doubtful edges, cut or not, that join submaps which neither sure edges nor sure loops join.
   void find() {
     std::vector<PoseConstraint> sure = loops([&](const ClosedLoop& loop) { return is_sure(loop); });
     std::vector<std::size_t> doubtful;

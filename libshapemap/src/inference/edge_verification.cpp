@@ -42,7 +42,7 @@ double share_right(const EdgeCandidate& one, const Pose2& other) {
 }
 
 /// Returns the best candidate by `worths`, and its probability against all others and none. Where its scans do not
-/// constrain it along a corridor, it is right if any of the places is to which it may slide.
+/// constrain it along a corridor, it is also right if a place to which it may slide is.
 VerifiedEdge verdict_by(const std::vector<double>& worths, const Edge& doubt) {
   const std::vector<EdgeCandidate>& candidates = doubt.candidates;
   std::vector<std::size_t> order(worths.size());
@@ -140,7 +140,7 @@ class Revision {
     return balance;
   }
 
-  /// Returns, for each candidate, the largest worth that a parallel edge gives it, above the worth of none of its own
+  /// Returns, for each candidate, how much more the most convincing parallel edge says for it than for none of its own
   /// candidates. The two edges are not independent, so it counts in part.
   std::vector<double> said_by_parallel(std::size_t d) const {
     const Edge& doubt = doubtful_[d];

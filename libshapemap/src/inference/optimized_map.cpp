@@ -14,7 +14,8 @@
 namespace shapemap {
 namespace {
 
-/// Fills in the components of the map, and which edges loops constrain. Improbable edges that no loop holds are cut.
+/// Fills in the components of the map, and which edges loops constrain. An improbable edge that no loop holds is cut,
+/// unless `improbable` says otherwise.
 void find_parts(const KeyframeGraph& graph, const std::vector<PoseConstraint>& loops, Improbable improbable,
                 const RobustOptions& options, OptimizedMap& map) {
   const std::size_t count = graph.keyframes.size();

@@ -63,13 +63,13 @@ class SubmapAlignments {
   double trust_cap_;
 };
 
-/// The trajectory crosses from one submap to the other between these nodes. `of_f` and `of_g` are the nodes of both, in
-/// order.
+/// A place where the trajectory goes from one of two submaps to the other, in either direction.
 struct Crossing {
   std::size_t in_f;
   std::size_t in_g;
   std::size_t num_steps;
 };
+/// Returns the crossings between two submaps. `of_f` and `of_g` are their nodes, in order.
 std::vector<Crossing> crossings(const std::vector<std::size_t>& of_f, const std::vector<std::size_t>& of_g);
 
 }  // namespace shapemap

@@ -143,7 +143,7 @@ class Assembly {
     return {ways[0], ways[0].gain - second};
   }
 
-  /// Says whether all candidates for the relative pose are of one pair of scans.
+  /// Says whether all candidates of a relative pose are of one pair of scans.
   bool is_hinge(const SubmapAlignment& way) const {
     const EdgeCandidate& first = joints_[way.joints.front()];
     return std::all_of(way.joints.begin(), way.joints.end(),

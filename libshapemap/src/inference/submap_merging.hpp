@@ -20,11 +20,11 @@ struct SubmapEvidence {
 /// Returns a first map by merging submaps, two at a time. The first submaps are the stretches whose edges are all sure.
 /// Each time, the two submaps are merged whose best relative pose leads most over the next best. A relative pose gains
 /// by the candidates that agree on it, and loses by crossed views and by steps that are too long. So a doubtful edge is
-/// decided late, when the submaps on both sides are large and tell most. Different logs, which no odometry edge joins,
-/// are not merged.
+/// decided late, when the submaps on both sides are large and tell most. Submaps that remain, also when the observer
+/// asks to stop, keep the relative poses of the odometry, and so do different logs, which no odometry edge joins.
 ///
-/// `variant` 0 uses the gains as they are. Each other variant disturbs them in its own fixed way, because an early
-/// mistake spoils the rest. When the observer asks to stop, the remaining submaps are joined by the odometry.
+/// `variant` 0 uses the gains as they are. Each other variant disturbs them in its own fixed manner, because an early
+/// mistake spoils the rest.
 std::vector<Pose2> merged_submaps(const SubmapEvidence& evidence, MapScore& score, const MapSearchOptions& options,
                                   int variant, RunObserver& observer);
 
