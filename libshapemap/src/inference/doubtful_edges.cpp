@@ -53,11 +53,11 @@ class DoubtfulEdges {
  private:
   struct Doubt {
     Edge of_map;
-    std::size_t in_map;                   ///< which of the link's hypotheses
-    std::vector<std::size_t> candidates;  ///< per candidate: which of the link's
+    std::size_t in_map;                   ///< index among the candidates of the odometry edge
+    std::vector<std::size_t> candidates;  ///< of each candidate in `of_map`: the same for it
   };
 
-  /// Joins what is certain by the candidates that there are; the rest stays in doubt.
+  /// Joins submaps at the edges that are certain by their present candidates. The other edges stay in doubt.
   void settle(double least_probability) {
     std::vector<Edge> doubtful;
     for (const Doubt& doubt : doubts_) doubtful.push_back(doubt.of_map);
@@ -79,7 +79,7 @@ class DoubtfulEdges {
     doubts_ = std::move(rest);
   }
 
-  /// Those that say otherwise than what joined their two sides, or all.
+  /// Cuts all doubtful edges, or those that contradict what joined their two submaps.
   void cut_those(bool all) {
     std::vector<Doubt> rest;
     for (Doubt& doubt : doubts_) {
@@ -94,7 +94,8 @@ class DoubtfulEdges {
     doubts_ = std::move(rest);
   }
 
-  /// Where the observer asked to stop, nobody was asked, and the link is as probable as before.
+  /// Records the verdict. An edge that was not verified, because the observer asked to stop, stays as probable as
+  /// before.
   void note(const Doubt& doubt, const VerifiedEdge& edge) {
     std::optional<VerifiedChoice>& verified = graph_.edges[doubt.of_map.a].verified;
     verified.reset();
@@ -103,7 +104,8 @@ class DoubtfulEdges {
                               by_candidate(doubt, edge.support_by_others), by_candidate(doubt, edge.parallel_support)};
   }
 
-  /// Candidates are all hypotheses, that of the map first.
+  /// Brings values from the order of a doubtful edge, in which the candidate of the map comes first, to that of its
+  /// edge.
   template <class What>
   static std::vector<What> by_candidate(const Doubt& doubt, const std::vector<What>& by_candidate) {
     std::vector<What> in_order(by_candidate.size());
@@ -111,7 +113,7 @@ class DoubtfulEdges {
     return in_order;
   }
 
-  /// Links that join pieces which neither sure links nor sure loops do, whether the map takes them or cuts them.
+  /// Finds the doubtful edges, cut or not, that join submaps which neither sure edges nor sure loops join.
   void find() {
     std::vector<PoseConstraint> sure = loops([&](const ClosedLoop& loop) { return is_sure(loop); });
     std::vector<std::size_t> doubtful;
@@ -135,7 +137,7 @@ class DoubtfulEdges {
            !looks_all_round(*views_[keyframe_of(graph_, loop.b)]);
   }
 
-  /// A link that is cut where loops hold both sides is as doubtful as one that is improbable: so are the loops.
+  /// An edge that loops have cut is as doubtful as an improbable one, because the loops are doubtful, too.
   bool is_doubtful(std::size_t i) const {
     if (map_.component[i] != map_.component[i + 1] || graph_.edges[i].candidates.empty()) return false;
     const double chance = map_.edge_choice[i] == kCut ? 0.0 : stated_probability(graph_.edges[i]);
@@ -153,7 +155,7 @@ class DoubtfulEdges {
     return constraints;
   }
 
-  /// Loops between pieces that were laid together otherwise, or not at all.
+  /// Opens the loops whose submaps were joined at another relative pose, or not at all.
   void drop_contradicted_loops() {
     const auto is_contradicted = [&](const ClosedLoop& loop) {
       const std::size_t a = keyframe_of(graph_, loop.a);
@@ -193,7 +195,7 @@ class DoubtfulEdges {
             best_deviation_m(pose_covariance(candidate.fit))};
   }
 
-  /// Where loops have cut a link, what the map has may be none of the link's hypotheses.
+  /// Where loops have cut an edge, the pose of the map is added, as it may be none of the edge's candidates.
   std::size_t candidate_in_map(std::size_t i) {
     if (map_.edge_choice[i] != kCut) return static_cast<std::size_t>(map_.edge_choice[i]);
     std::vector<MatchCandidate>& known = graph_.edges[i].candidates;
@@ -210,7 +212,7 @@ class DoubtfulEdges {
 
   Pose2 in_map(std::size_t i) const { return inverse(map_.map_from_keyframe[i]) * map_.map_from_keyframe[i + 1]; }
 
-  /// What scans before and after a link say of each other is carried to the link by way of the map.
+  /// Adds what scans before and after an edge say of each other, carried to the edge by the poses of the map.
   void add_bridges(std::size_t i) {
     const std::vector<Pose2>& poses = map_.map_from_keyframe;
     for (const EdgeCandidate& bridge :
@@ -224,7 +226,7 @@ class DoubtfulEdges {
     }
   }
 
-  /// With much more effort than a chain can have for each link.
+  /// The few edges that are left can have much more effort than the front end has for each edge.
   void search_again(std::size_t i) {
     MatchSearchOptions search = options_.matcher.search;
     for (int* effort : {&search.voting.peaks, &search.candidates.rotation_peaks, &search.candidates.refined,
@@ -234,7 +236,7 @@ class DoubtfulEdges {
     for (const MatchCandidate& pose : find_candidates(*views_[i], *views_[i + 1], search)) add(i, pose);
   }
 
-  /// What is unusual scores less, as in the chain.
+  /// An unusual motion scores less, as in the front end.
   void add(std::size_t i, MatchCandidate pose) {
     pose.score -= surprise(graph_.keyframes[i + 1], prior_, pose.ref_from_query);
     add_if_new(pose, graph_.edges[i].candidates);
@@ -246,7 +248,7 @@ class DoubtfulEdges {
     changed_ = true;
   }
 
-  /// Moves what is not joined any more apart.
+  /// Moves components that are no longer joined apart, so that they do not overlap.
   void part(const std::vector<PoseConstraint>& joined) {
     map_.component = connected_components(views_.size(), joined);
     for (std::size_t n = 0; n < views_.size(); ++n) {
@@ -275,7 +277,7 @@ class DoubtfulEdges {
   NodeViews views_;
   std::vector<Doubt> doubts_;
   MotionPrior prior_;
-  std::vector<Pose2> poses_;         ///< of the pieces, as far as they are joined
+  std::vector<Pose2> poses_;         ///< of the nodes, in submaps as far as they are joined
   std::vector<std::size_t> submap_;  ///< of each node
   bool changed_ = false;
 };

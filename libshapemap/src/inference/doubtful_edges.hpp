@@ -7,10 +7,10 @@
 
 namespace shapemap {
 
-/// Revises the doubtful links of `map` that join what is before them to what comes after, alone or with weak loops, by
-/// all scans of both; see verify_edges(). Loops that then are contradicted are opened again. What bridges over a link
-/// say of it is added to its hypotheses in `chain`. Whether anything changed: poses of pieces that are not joined any
-/// more then lie far apart. `store`, by positions, may be null.
+/// Verifies the doubtful edges of `map` that alone, or only with weak loops, join the scans before them to those after
+/// them, by all scans of both sides; see verify_edges(). Loops that the result contradicts are opened again. Cross-edge
+/// matches give further candidates to the edges of `graph`. Returns whether anything changed. Components that are no
+/// longer joined then lie far apart. `store`, whose keys are scans, may be null.
 bool verify_doubtful_edges(const RobustOptions& options, const Execution& execution, MatchCache* store,
                            KeyframeGraph& graph, OptimizedMap& map);
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 namespace shapemap {
-/// Moves what the chain has after link `i`; loops that then are contradicted are given up.
+/// Moves the nodes after edge `i`, up to the next cut, and opens the loops that the moved map contradicts.
 void EdgeMoves::swing(MapHypothesis& map, std::size_t i, const Pose2& move) const {
   std::size_t n = i + 1;
   do {
@@ -18,7 +18,7 @@ void EdgeMoves::swing(MapHypothesis& map, std::size_t i, const Pose2& move) cons
   }
 }
 
-/// Closes the loops of a changed map, and takes it if it then is better.
+/// Closes the loops of a changed map, and keeps the change if the map then has a larger value.
 bool EdgeMoves::better_when_closed(MapHypothesis& trial, MapHypothesis& best, double hopeless) {
   problem_.solve(trial);
   problem_.rate(trial);
@@ -31,8 +31,7 @@ bool EdgeMoves::better_when_closed(MapHypothesis& trial, MapHypothesis& best, do
   return true;
 }
 
-/// Whether a change of the best map so far has not been tried yet; what was tried is not worth another look until the
-/// map changes.
+/// Says whether a change of the best map has not been tried yet. It is not tried again until the best map changes.
 bool EdgeMoves::is_new(std::size_t edge, int choice, std::size_t loop) {
   return tried_.insert({edge, choice, loop}).second;
 }
@@ -52,7 +51,7 @@ bool EdgeMoves::try_candidates(MapHypothesis& best, std::size_t i) {
   return false;
 }
 
-/// A strong loop that does not fit: one of the alignments along it may be wrong.
+/// If a strong loop does not fit, one of the edges along it may be wrong.
 bool EdgeMoves::try_cutting_for(MapHypothesis& best, std::size_t k) {
   const PoseConstraint& loop = problem_.best_member(k);
   const std::vector<std::size_t> submap = submaps_of(problem_, best);
@@ -69,7 +68,7 @@ bool EdgeMoves::try_cutting_for(MapHypothesis& best, std::size_t k) {
   return false;
 }
 
-/// The least probable of the links from node `first` to node `last`.
+/// Returns the least probable edges from node `first` to node `last`.
 std::vector<std::size_t> EdgeMoves::doubtful_edges(std::size_t first, std::size_t last, std::size_t count) const {
   std::vector<std::size_t> doubtful;
   for (std::size_t i = first; i < last; ++i) {
@@ -81,7 +80,7 @@ std::vector<std::size_t> EdgeMoves::doubtful_edges(std::size_t first, std::size_
   return doubtful;
 }
 
-/// Those that do not take what the chain took.
+/// Returns the edges that do not take the candidate of the odometry.
 std::vector<std::size_t> EdgeMoves::changed_edges(const MapHypothesis& map) const {
   std::vector<std::size_t> changed;
   for (std::size_t i = 0; i < edges_.size(); ++i) {

@@ -12,8 +12,8 @@
 
 namespace shapemap {
 
-/// Looks into what contradicts a map: a strong loop that does not fit, or a doubtful alignment, may show that another
-/// alignment is wrong, or a loop. Stops early when the observer asks to.
+/// These search moves look into contradictions: a strong loop that does not fit, or a doubtful edge, may show that
+/// another edge or loop is wrong. The search ends early when the observer asks to stop.
 class EdgeMoves {
  public:
   EdgeMoves(MapObjective& problem, LoopMoves& closer, const GraphEvidence& evidence, const MapSearchOptions& options,
@@ -25,7 +25,8 @@ class EdgeMoves {
         options_(options),
         observer_(observer) {}
 
-  /// The most doubtful links come first: a wrong loop that needs a better link cut must not get in their way.
+  /// Repairs the most doubtful edges first. Otherwise a wrong loop that is fitted by cutting a better edge would get in
+  /// their way.
   void repair(MapHypothesis& best);
 
  private:
@@ -44,8 +45,8 @@ class EdgeMoves {
   const std::vector<LoopCluster>& clusters_;
   const MapSearchOptions& options_;
   RunObserver& observer_;
-  double doubt_below_ = 0.0;                                   ///< links that are less probable may be changed
-  std::set<std::tuple<std::size_t, int, std::size_t>> tried_;  ///< with the best map so far
+  double doubt_below_ = 0.0;                                   ///< less probable edges may be changed
+  std::set<std::tuple<std::size_t, int, std::size_t>> tried_;  ///< changes of the best map that were tried
 };
 
 }  // namespace shapemap

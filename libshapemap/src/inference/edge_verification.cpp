@@ -18,7 +18,7 @@
 namespace shapemap {
 namespace {
 
-/// By its two scans, and whether the map has it.
+/// Returns the worth of a candidate by its own two scans, and by whether the map has it.
 double worth_by_itself(const Edge& doubt, std::size_t k) {
   const EdgeCandidate& candidate = doubt.candidates[k];
   const VerificationWeights& weights = kInference.verification_weights;
@@ -33,16 +33,16 @@ double worth_of_none(const Edge& doubt) {
 
 bool is_same(const Pose2& a, const Pose2& b) { return agrees(a, b, kInference.agreement.same_candidate); }
 
-/// How right it is to be at the candidate `one` when `other` is true: a place is right or not, but along a corridor it
-/// slides, and is the less right the farther.
+/// Returns how right candidate `one` is when `other` is true. A place is right or wrong, but along a corridor a
+/// candidate slides, and is less right the farther it is off.
 double share_right(const EdgeCandidate& one, const Pose2& other) {
   if (is_same(one.a_from_b, other)) return 1.0;
   const double deviations = deviations_off({0, 0, one.a_from_b, one.covariance, 0.0}, other);
   return std::max(0.0, 1.0 - deviations / kGraph.same_place.deviations);
 }
 
-/// The best candidate by their `worths`, against all others, and none of them. Where nothing holds it along a corridor,
-/// it is right if any is that it may slide to.
+/// Returns the best candidate by `worths`, and its probability against all others and none. Where its scans do not
+/// constrain it along a corridor, it is also right if a place to which it may slide is.
 VerifiedEdge verdict_by(const std::vector<double>& worths, const Edge& doubt) {
   const std::vector<EdgeCandidate>& candidates = doubt.candidates;
   std::vector<std::size_t> order(worths.size());
@@ -60,7 +60,7 @@ VerifiedEdge verdict_by(const std::vector<double>& worths, const Edge& doubt) {
     all += odds;
     right += share_right(best, pose) * odds;
   }
-  // The map has aligned its own to more than these two.
+  // The map has matched its own candidate to more scans than these two.
   const std::size_t taken = is_same(best.a_from_b, candidates[0].a_from_b) ? 0 : order.front();
   return {taken, right / all, false, {}, {}};
 }
@@ -118,7 +118,7 @@ class Revision {
     return verdict;
   }
 
-  /// By all pairs of scans of the two pieces that a link joins, but for the two of the link.
+  /// Returns the balance of all pairs of scans of the two submaps that an edge joins, except for its own pair.
   EdgeSupport support_by_others(std::size_t edge, const Pose2& a_from_b) const {
     const std::vector<Pose2>& poses = submaps_.map_from_node();
     const std::vector<std::size_t>& submap = submaps_.submap_of_node();
@@ -140,8 +140,8 @@ class Revision {
     return balance;
   }
 
-  /// Of each candidate, how much more than none of its own the parallel link says for it that says most. The two do not
-  /// tell independently of each other, so it counts in part.
+  /// Returns, for each candidate, how much more the most convincing parallel edge says for it than for none of its own
+  /// candidates. The two edges are not independent, so it counts in part.
   std::vector<double> said_by_parallel(std::size_t d) const {
     const Edge& doubt = doubtful_[d];
     std::vector<double> said(doubt.candidates.size(), 0.0);
@@ -172,7 +172,8 @@ class Revision {
     return after - before <= kInference.verification.window;
   }
 
-  /// With the parallel links that say the same; those that say otherwise are no more probable than that it is wrong.
+  /// Joins the edge and the parallel edges that agree with it. A parallel edge that contradicts it can only be right if
+  /// this one is wrong.
   void join(std::size_t d) {
     const std::size_t edge = doubtful_[d].a;
     const Pose2 a_from_b = doubtful_[d].candidates[edges_[d].candidate].a_from_b;
@@ -193,7 +194,8 @@ class Revision {
     }
   }
 
-  /// That of the map where it is one, else the nearest. Along a long way more must be allowed for.
+  /// Returns the candidate at `place`: that of the map if it is there, else the nearest. More difference is allowed
+  /// along a long trajectory.
   static std::optional<std::size_t> candidate_at(const Pose2& place, const Edge& doubt, bool is_near) {
     std::optional<std::size_t> nearest;
     double nearest_m = std::numeric_limits<double>::infinity();

@@ -7,14 +7,14 @@
 namespace shapemap {
 namespace {
 
-/// How the piece of the later node moves to where a loop wants it.
+/// Returns the motion that brings the submap of the later node to where a loop has it.
 Pose2 join(const MapHypothesis& map, const PoseConstraint& loop) {
   return map.map_from_node[loop.a] * loop.a_from_b * inverse(map.map_from_node[loop.b]);
 }
 
 }  // namespace
 
-/// Closes the loops that the map agrees with as it is.
+/// Closes the loops that agree with the map as it is.
 bool LoopMoves::close_agreeing(MapHypothesis& map) {
   MapHypothesis trial = map;
   bool any = false;
@@ -32,7 +32,7 @@ bool LoopMoves::close_agreeing(MapHypothesis& map) {
   return true;
 }
 
-/// Whether loop `k` may decide where two pieces are to each other.
+/// Says whether loop `k` may decide the relative pose of two submaps.
 bool LoopMoves::can_join(const MapHypothesis& map, const std::vector<std::size_t>& submap, std::size_t k) const {
   const LoopCluster& cluster = clusters_[k];
   const SearchNumbers& numbers = kInference.search;
@@ -51,7 +51,7 @@ bool LoopMoves::can_join(const MapHypothesis& map, const std::vector<std::size_t
   return true;
 }
 
-/// Brings two pieces that nothing joins yet to where a loop wants them; false if it may not decide that.
+/// Moves a submap to where a loop has it, unless the two are joined. Returns false if the loop may not decide that.
 bool LoopMoves::join_submaps(MapHypothesis& map, std::size_t k) const {
   const PoseConstraint& loop = problem_.best_member(k);
   const std::vector<std::size_t> submap = submaps_of(problem_, map);

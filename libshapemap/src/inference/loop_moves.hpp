@@ -10,21 +10,21 @@
 
 namespace shapemap {
 
-/// Per node: the first of those that what was decided joins it to.
+/// Returns, for each node, the first node of those that the taken candidates and closed loops join it to.
 inline std::vector<std::size_t> submaps_of(const MapObjective& problem, const MapHypothesis& map) {
   return connected_components(problem.num_nodes(), problem.constraints(map));
 }
 
-/// Closes the loops that gain. Stops early when the observer asks to.
+/// These search moves close the loops that raise the value of a map. They end early when the observer asks to stop.
 class LoopMoves {
  public:
   LoopMoves(MapObjective& problem, const std::vector<LoopCluster>& clusters, const MapSearchOptions& options,
             RunObserver& observer)
       : problem_(problem), clusters_(clusters), options_(options), observer_(observer) {}
 
-  /// Closes all loops that gain, strongest first.
+  /// Closes all loops that raise the value, strongest first.
   void close(MapHypothesis& map);
-  /// Only those that the map agrees with as it is.
+  /// Closes only the loops that agree with the map as it is.
   void close_all_agreeing(MapHypothesis& map);
 
  private:

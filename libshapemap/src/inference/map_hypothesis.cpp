@@ -12,14 +12,14 @@
 namespace shapemap {
 namespace {
 
-/// Two loops between the same two stretches of the way tell one story.
+/// Says whether two loops join the same two stretches of the trajectory. Such loops are right or wrong together.
 bool are_of_same_stretches(const PoseConstraint& one, const PoseConstraint& other) {
   const auto apart = [](std::size_t a, std::size_t b) { return std::max(a, b) - std::min(a, b); };
   const std::size_t near = kInference.agreement.same_stretch;
   return apart(one.a, other.a) <= near && apart(one.b, other.b) <= near;
 }
 
-/// The best member of each node.
+/// Returns the best members of a cluster, at most one for each node.
 std::vector<PoseConstraint> constraints_of(const LoopCluster& cluster) {
   std::vector<PoseConstraint> result;
   std::set<std::size_t> of_a;
@@ -87,7 +87,7 @@ MapHypothesis MapObjective::of_map(std::vector<Pose2> map_from_node) {
     const bool counts = clusters_[k].strength >= kInference.objective.least_strength;
     choice.accepted[k] = counts && is_within(off(choice, k), kInference.agreement.agrees) ? 1 : 0;
   }
-  for (std::size_t i = 0; i < edges_.size(); ++i) {  // what nothing else joins stays with the chain
+  for (std::size_t i = 0; i < edges_.size(); ++i) {  // candidates of the odometry join what nothing else does
     if (choice.edge_choice[i] != kCut || !edges_[i].exists()) continue;
     const std::vector<std::size_t> part = connected_components(num_nodes_, constraints(choice));
     if (part[i] != part[i + 1]) choice.edge_choice[i] = 0;
@@ -138,7 +138,7 @@ std::vector<std::size_t> MapObjective::rings(const MapHypothesis& choice) const 
   return connected_components(num_nodes_, held);
 }
 
-/// Of alternatives that are not the best, of links that are cut, and of unusual steps and turns.
+/// Returns the cost of candidates that are not the best, of cut edges, and of unusual steps and turns.
 double MapObjective::cost_of_edges(const MapHypothesis& choice) const {
   const ObjectiveNumbers& numbers = kInference.objective;
   double cost = 0.0;
@@ -147,7 +147,7 @@ double MapObjective::cost_of_edges(const MapHypothesis& choice) const {
     if (!edge.exists() || edge.probability >= options_.doubt_below) continue;
     if (choice.edge_choice[i] == kCut) {
       const double p = std::clamp(std::max(edge.probability, edge.any_probability), numbers.least_probability,
-                                  1.0 - 1e-6);  // its log odds stay finite
+                                  1.0 - 1e-6);  // the log odds stay finite
       cost += std::max(0.0, log_odds_of(p) + kLoops.members.prior);
     } else {
       const auto taken = static_cast<std::size_t>(choice.edge_choice[i]);

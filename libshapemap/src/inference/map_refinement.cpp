@@ -19,7 +19,8 @@ struct Neighbour {
   double apart;
 };
 
-/// For each node the earlier ones that most likely see the same; half of them from the same stretch of the way.
+/// Returns, for each node, the earlier nodes that most likely see the same. Half of them may be from the same stretch
+/// of the trajectory.
 std::vector<Neighbour> neighbours(const std::vector<Pose2>& poses, const RefinementOptions& options) {
   std::vector<std::vector<Neighbour>> near(poses.size());
   std::vector<std::vector<Neighbour>> far(poses.size());

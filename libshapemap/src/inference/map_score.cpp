@@ -12,14 +12,15 @@
 namespace shapemap {
 namespace {
 
-/// Whether a pair must be compared anew. Along each axis, so that what is known is of one small square.
+/// Says whether a pair must be compared anew. It tests each axis by itself, so that a known value holds for one small
+/// square.
 bool moved(const Pose2& a, const Pose2& b) {
   const PoseTolerance& known = kInference.agreement.known;
   return (a.translation() - b.translation()).lpNorm<Eigen::Infinity>() > known.m ||
          angle_between(a.theta_rad, b.theta_rad) > known.rad;
 }
 
-/// Neighbours in the chain tell nothing new; of all others there are more than are needed.
+/// Says whether a pair is rated. Successive keyframes tell nothing new, and of the others there are more than enough.
 bool is_asked(std::size_t a, std::size_t b) {
   const MapScoreNumbers& numbers = kInference.map_score;
   return b - a >= numbers.least_apart && (b - a < numbers.same_stretch || (a % 2 == 0 && b % 2 == 0));

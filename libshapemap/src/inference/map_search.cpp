@@ -18,7 +18,7 @@
 namespace shapemap {
 namespace {
 
-/// Passes on whether to keep going, and remembers for other threads: an observer is asked from one only.
+/// An observer may only be asked from one thread, so its wish to stop is recorded here for the others.
 class StopSign : public RunObserver {
  public:
   explicit StopSign(RunObserver& observer) : observer_(observer) {}
@@ -41,14 +41,14 @@ class StopSign : public RunObserver {
   std::atomic<bool> stopped_{false};
 };
 
-/// What another thread computes, which learns meanwhile when to stop.
+/// Returns what another thread computes. The observer is asked meanwhile, so that the other thread learns when to stop.
 MapHypothesis waited_for(std::future<MapHypothesis>& result, StopSign& stop) {
   constexpr std::chrono::milliseconds kPatience{20};
   while (result.wait_for(kPatience) == std::future_status::timeout) stop.keep_going();
   return result.get();
 }
 
-/// The best of some maps that submaps are merged to; no more are tried when several in a row are no better.
+/// Returns the best map of several runs of submap merging. It ends when several runs in a row bring no gain.
 MapHypothesis merged(MapObjective& problem, const GraphEvidence& evidence, const std::vector<Pose2>& map_of_odometry,
                      const MapSearchOptions& options, RunObserver& observer) {
   MapHypothesis best;
@@ -70,7 +70,7 @@ MapHypothesis merged(MapObjective& problem, const GraphEvidence& evidence, const
 MapSolution search_map(const GraphEvidence& evidence, const VisibilityOptions& visibility,
                        const MapSearchOptions& options, const Execution& execution) {
   const std::vector<LoopCluster>& clusters = evidence.clusters;
-  // Each objective has a score of its own, so that neither depends on how far the other has come.
+  // Each objective has its own score, so that neither result depends on how far the other has come.
   MapObjective of_chain(evidence, visibility, options, 1);
   MapObjective problem(evidence, visibility, options, execution.threads);
   StopSign stop(execution.observer);
@@ -85,7 +85,7 @@ MapSolution search_map(const GraphEvidence& evidence, const VisibilityOptions& v
   try {
     if (execution.threads != 1) meanwhile = std::async(std::launch::async, closed_chain, std::ref(reader));
   } catch (const std::system_error&) {
-    // No thread is to be had: it is done afterwards.
+    // If no thread can be started, the work is done afterwards.
   }
   LoopMoves closer(problem, clusters, options, stop);
   MapHypothesis best = merged(problem, evidence, chain.map_from_node, options, stop);

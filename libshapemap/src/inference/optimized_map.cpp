@@ -14,7 +14,8 @@
 namespace shapemap {
 namespace {
 
-/// Fills in what hangs together, and by what.
+/// Fills in the components of the map, and which edges loops constrain. An improbable edge that no loop holds is cut,
+/// unless `improbable` says otherwise.
 void find_parts(const KeyframeGraph& graph, const std::vector<PoseConstraint>& loops, Improbable improbable,
                 const RobustOptions& options, OptimizedMap& map) {
   const std::size_t count = graph.keyframes.size();
@@ -38,7 +39,7 @@ void find_parts(const KeyframeGraph& graph, const std::vector<PoseConstraint>& l
   }
 }
 
-/// For each keyframe, the piece of the chain that it is in, by number.
+/// Returns, for each keyframe, the number of the stretch of trusted edges that it is in.
 std::vector<std::size_t> trusted_submaps(const std::vector<Edge>& edges) {
   std::vector<std::size_t> submap(edges.size() + 1, 0);
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -60,7 +61,7 @@ std::vector<PoseConstraint> loop_constraints(const std::vector<LoopCluster>& clu
   return constraints;
 }
 
-/// Whether the map is at all what a loop says: robust losses let all others outvote one that is wrong.
+/// Says whether the map agrees with a loop. With robust losses, all other constraints outvote a wrong loop.
 bool is_closed(const LoopCluster& cluster, const std::vector<Pose2>& map_from_keyframe) {
   const EdgeCandidate& best = cluster.members.front();
   return agrees(best.a_from_b, inverse(map_from_keyframe[best.a]) * map_from_keyframe[best.b],

@@ -15,36 +15,36 @@ namespace shapemap {
 
 /// A loop that was considered and is not closed.
 struct RefusedLoop {
-  ClosedLoop loop;  ///< of scans
-  std::string why;  ///< one line
+  ClosedLoop loop;  ///< between scans
+  std::string why;  ///< one line of text
 };
 
-/// Where the keyframes are, and what holds them there.
+/// The poses of the keyframes, and the constraints on them.
 struct OptimizedMap {
   std::vector<Pose2> map_from_keyframe;
-  std::vector<int> edge_choice;        ///< per link: which of its hypotheses; kCut: none
-  std::vector<bool> loop_constrained;  ///< per link: its two keyframes stay where they are without it
-  std::vector<std::size_t> component;  ///< per keyframe: the first of those that it hangs together with
-  std::vector<ClosedLoop> loops;       ///< of positions
+  std::vector<int> edge_choice;        ///< of each edge: its candidate, or kCut
+  std::vector<bool> loop_constrained;  ///< of each edge: whether loops hold its keyframes in place without it
+  std::vector<std::size_t> component;  ///< of each keyframe: the first keyframe of its component
+  std::vector<ClosedLoop> loops;       ///< between scans
   std::vector<RefusedLoop> refused_loops;
-  /// Of keyframes, all that the map was solved with. None where it is only the chain.
+  /// These are all constraints between keyframes that the map was solved with. A map of odometry alone has none.
   std::vector<PoseConstraint> constraints;
 };
 
-/// What the links say by the hypotheses that are chosen, but for those that are cut.
+/// Returns the constraints of the chosen candidates. Edges that are cut give none.
 std::vector<PoseConstraint> edge_constraints(const KeyframeGraph& graph, const std::vector<int>& edge_choice);
 
-/// What becomes of a link that is improbable by itself, and alone holds what comes after it.
+/// This says what happens to an improbable edge that alone holds what comes after it.
 enum class Improbable {
   kIsCut,
-  kStays,  ///< all scans of both sides will judge it: verify_doubtful_edges()
+  kStays,  ///< verify_doubtful_edges() will judge it by all scans of both sides
 };
 
-/// The chain as it is: errors add up. Improbable links are cut.
+/// Returns the map of odometry alone, in which errors add up. Improbable edges are cut.
 OptimizedMap map_of_odometry(const KeyframeGraph& graph, const RobustOptions& options);
 
-/// The chain with its loops closed, and all scans aligned to all that see the same. When the observer asks to stop,
-/// with the loops that are closed by then.
+/// Returns the map with its loops closed, and all scans matched to all that see the same. When the observer asks to
+/// stop, the map has the loops that were closed by then.
 OptimizedMap optimized_map(const KeyframeGraph& graph, const std::vector<EdgeCandidate>& candidates,
                            Improbable improbable, const RobustOptions& options, const Execution& execution);
 

@@ -33,7 +33,7 @@ bool SubmapAlignments::agree(const Pose2& f_from_g, const Seen& one, const Seen&
   return agrees(expected, one.f_from_b, {same.m + drift.m * nodes, same.rad + drift.rad * nodes});
 }
 
-/// The weighted mean of places and directions (Umeyama 1991).
+/// Returns the weighted mean of positions and directions (Umeyama 1991).
 Pose2 SubmapAlignments::mean_of(const std::vector<Seen>& joints) {
   const MergingNumbers& numbers = kInference.merging;
   Point2 mean_f = Point2::Zero();
@@ -62,8 +62,8 @@ Pose2 SubmapAlignments::mean_of(const std::vector<Seen>& joints) {
   return {shift.x(), shift.y(), theta_rad};
 }
 
-/// As that of a cluster of loops: the best joint of each node, summed over the side that says less. Scans see the same
-/// walls: witnesses do not add up without limit.
+/// Computes the strength as for a cluster of loops: the best candidate of each node, summed over the submap where the
+/// sum is smaller. The sum is limited, because the scans see the same walls.
 double SubmapAlignments::strength(const std::vector<Seen>& joints) const {
   std::map<std::size_t, double> by_f;
   std::map<std::size_t, double> by_g;

@@ -6,26 +6,25 @@
 
 #include "shapemap/graph/edge.hpp"
 
-/// Ways to lay two pieces of a map together, each with a frame of its own.
+/// These functions find the relative poses that candidates give two submaps.
 namespace shapemap {
 
-/// The submap `f` and the submap `g` in one frame, and the candidates that say so.
+/// A relative pose of two submaps, and the candidates that agree on it.
 struct SubmapAlignment {
   Pose2 f_from_g;
   std::vector<std::size_t> joints;  ///< indices of these candidates
   double gain = 0.0;
 };
 
-/// What is known of how the submaps of a graph lie to each other.
+/// The submaps of a graph, and the candidates between their nodes.
 struct SubmapGraph {
-  /// Candidates of edges between nodes of one or of two submaps; the score of each is what it is worth, and limited.
+  /// The candidates are between nodes of one or of two submaps. The score of each is its worth, which is limited.
   const std::vector<EdgeCandidate>& joints;
   const std::vector<Pose2>& submap_from_node;      ///< each node in the frame of its submap
-  const std::vector<std::size_t>& submap_of_node;  ///< by number
+  const std::vector<std::size_t>& submap_of_node;  ///< number of the submap of each node
 };
 
-/// Finds the ways to lay two submaps together. What all candidates between two submaps are worth together is at most
-/// `trust_cap`.
+/// Finds the relative poses of two submaps. All candidates between two submaps together are worth at most `trust_cap`.
 class SubmapAlignments {
  public:
   SubmapAlignments(const SubmapGraph& graph, double trust_cap)
@@ -34,22 +33,22 @@ class SubmapAlignments {
         submap_of_node_(graph.submap_of_node),
         trust_cap_(trust_cap) {}
 
-  /// Returns what some of `between`, the candidates between `f` and another submap, agree on; what the best of them say
-  /// comes first, and there are no more than can be right. An alignment that starts from a candidate gains what
-  /// `noise` has for it; an empty one has nothing.
+  /// Returns the relative poses on which candidates in `between` agree. These lie between `f` and another submap. The
+  /// pose of the best candidate comes first, and there are no more poses than can be right. A pose that starts from a
+  /// candidate gains the `noise` of that candidate, if there is any noise.
   std::vector<SubmapAlignment> ways(std::size_t f, const std::vector<std::size_t>& between,
                                     const std::vector<double>& noise = {}) const;
 
-  /// Says whether a candidate within a submap agrees with it.
+  /// Says whether a candidate within one submap agrees with it.
   bool holds(const EdgeCandidate& joint) const;
 
  private:
-  /// A joint as from piece `f` to the other.
+  /// A candidate, seen from submap `f`.
   struct Seen {
     std::size_t joint;
-    std::size_t a;  ///< in `f`
+    std::size_t a;  ///< the node in `f`
     std::size_t b;
-    Pose2 f_from_b;  ///< by the joint
+    Pose2 f_from_b;  ///< by the candidate
     Pose2 g_from_b;
     double worth;
   };
@@ -64,12 +63,13 @@ class SubmapAlignments {
   double trust_cap_;
 };
 
-/// Where the chain goes from one piece to the other and back: nodes of both, `of_f` and `of_g`, in order.
+/// A place where the trajectory goes from one of two submaps to the other, in either direction.
 struct Crossing {
   std::size_t in_f;
   std::size_t in_g;
   std::size_t num_steps;
 };
+/// Returns the crossings between two submaps. `of_f` and `of_g` are their nodes, in order.
 std::vector<Crossing> crossings(const std::vector<std::size_t>& of_f, const std::vector<std::size_t>& of_g);
 
 }  // namespace shapemap

@@ -21,11 +21,11 @@ namespace {
 
 using SubmapPair = std::pair<std::size_t, std::size_t>;
 
-/// The best way, and how much better it is than the next, or than none.
+/// The best relative pose of two submaps, and its gain over the next best, or over leaving them apart.
 struct Lead {
   SubmapAlignment best;
   double lead = 0.0;
-  bool is_stale = false;  ///< one of the pieces has grown since
+  bool is_stale = false;  ///< whether one of the submaps has grown since
 };
 
 double log_odds(double probability) {
@@ -143,7 +143,7 @@ class Assembly {
     return {ways[0], ways[0].gain - second};
   }
 
-  /// Whether all that is known of how the two pieces lie to each other is of one pair of scans.
+  /// Says whether all candidates of a relative pose are of one pair of scans.
   bool is_hinge(const SubmapAlignment& way) const {
     const EdgeCandidate& first = joints_[way.joints.front()];
     return std::all_of(way.joints.begin(), way.joints.end(),
@@ -166,12 +166,13 @@ class Assembly {
     }
     between_.erase(pair);
     leads_.erase(pair);
-    if (!is_hinge(way)) solve(f, way.joints);  // else nothing bends
+    if (!is_hinge(way)) solve(f, way.joints);  // a single pair of scans bends no submap
     for (const SubmapPair& other : inherit(f, g, f_is_smaller)) leads_[other] = lead_of(other);
   }
 
-  /// What joined `g` to others now joins `f`. Returns the pairs that new joints have come to, or to which the smaller
-  /// of the two belonged; to others too little is new to look again before it is their turn.
+  /// Gives the candidates between `g` and other submaps to `f`. Returns the pairs whose lead must be computed at once:
+  /// those that got new candidates, and those of the smaller of the two submaps. The others have learned too little,
+  /// and are computed again when it is their turn.
   std::vector<SubmapPair> inherit(std::size_t f, std::size_t g, bool f_is_smaller) {
     std::vector<SubmapPair> changed;
     std::vector<SubmapPair> gone;
@@ -199,8 +200,7 @@ class Assembly {
     return changed;
   }
 
-  /// A piece is held by its sure links, by the joints that were decided on, `taken`, and by all others that agree with
-  /// it.
+  /// Solves for a submap by its sure edges, the candidates `taken`, and all other candidates that agree with it.
   void solve(std::size_t f, const std::vector<std::size_t>& taken) {
     const std::vector<std::size_t>& nodes = nodes_[f];
     const auto number = [&](std::size_t n) {
@@ -249,15 +249,15 @@ class Assembly {
   const std::vector<Edge>& edges_;
   const MapSearchOptions& options_;
   std::vector<Pose2> chain_;
-  std::vector<Pose2> pose_;  ///< in the frame of the piece
+  std::vector<Pose2> pose_;  ///< of each node, in the frame of its submap
   MapScore& score_;
   double usual_step_m_;
   std::vector<std::size_t> submap_;               ///< of each node
-  std::vector<std::size_t> log_;                  ///< of each node: alignments of the chain join all of one log
-  std::vector<std::vector<std::size_t>> nodes_;   ///< of each piece, in order
-  std::vector<EdgeCandidate> joints_;             ///< the score of each is what it is worth
-  std::vector<double> noise_;                     ///< of each, if any
-  std::vector<std::vector<std::size_t>> within_;  ///< joints of each piece
+  std::vector<std::size_t> log_;                  ///< of each node: log, within which every edge exists
+  std::vector<std::vector<std::size_t>> nodes_;   ///< of each submap, in order
+  std::vector<EdgeCandidate> joints_;             ///< the score of each is its worth
+  std::vector<double> noise_;                     ///< of each candidate, if any
+  std::vector<std::vector<std::size_t>> within_;  ///< candidates within each submap
   std::map<SubmapPair, std::vector<std::size_t>> between_;
   std::map<SubmapPair, Lead> leads_;
 };

@@ -10,20 +10,21 @@
 
 namespace shapemap {
 
-/// What is known of how nodes lie to each other before submaps are merged.
+/// The evidence about the relative poses of nodes before submaps are merged.
 struct SubmapEvidence {
   const std::vector<Edge>& edges;  ///< edge i joins node i to node i + 1
   const std::vector<EdgeCandidate>& loops;
   const std::vector<Pose2>& map_of_odometry;  ///< poses of the nodes by the first candidates of the edges
 };
 
-/// A first map, made of pieces: stretches of the chain whose alignments are all sure are laid together, two at a time.
-/// Next come those for which one way (alignments of their scans, less what tells against it: views that are crossed,
-/// steps that are too long) leads most over all others. So a doubtful alignment is decided late, when the pieces on
-/// both sides are large and tell most. Pieces that the chain does not join are not laid together.
+/// Returns a first map by merging submaps, two at a time. The first submaps are the stretches whose edges are all sure.
+/// Each time, the two submaps are merged whose best relative pose leads most over the next best. A relative pose gains
+/// by the candidates that agree on it, and loses by crossed views and by steps that are too long. So a doubtful edge is
+/// decided late, when the submaps on both sides are large and tell most. Submaps that remain, also when the observer
+/// asks to stop, keep the relative poses of the odometry, and so do different logs, which no odometry edge joins.
 ///
-/// `variant` 0 is that; others disturb what ways gain, each differently and always in the same way, for a wrong
-/// decision early on spoils the rest. Stops early when the observer asks to; the rest then stays as the chain has it.
+/// `variant` 0 uses the gains as they are. Each other variant disturbs them in its own fixed manner, because an early
+/// mistake spoils the rest.
 std::vector<Pose2> merged_submaps(const SubmapEvidence& evidence, MapScore& score, const MapSearchOptions& options,
                                   int variant, RunObserver& observer);
 

@@ -8,7 +8,7 @@
 
 namespace shapemap {
 
-/// A map in pieces, each right in itself, in one frame. Link i is what node i + 1 is to node i.
+/// The submaps of a map, each right in itself, in one frame. Edge i joins node i to node i + 1.
 class Submaps {
  public:
   Submaps(std::vector<Pose2> map_from_node, std::vector<std::size_t> submap_of_node)
@@ -19,19 +19,19 @@ class Submaps {
 
   bool is_joined(std::size_t edge) const { return submap_of_node_[edge] == submap_of_node_[edge + 1]; }
 
-  /// What node i + 1 is to node i now.
+  /// Returns the present pose of node i + 1 relative to node i.
   Pose2 step(std::size_t edge) const { return inverse(map_from_node_[edge]) * map_from_node_[edge + 1]; }
 
-  /// How the piece of the later node moves when the link is `a_from_b`.
+  /// Returns the motion of the submap of the later node if the edge is `a_from_b`.
   Pose2 moved_by(std::size_t edge, const Pose2& a_from_b) const;
 
-  /// Moves the piece of the later node, and gives it the number of the other.
+  /// Moves the submap of the later node, and gives it the number of the other submap.
   void join(std::size_t edge, const Pose2& a_from_b);
 
-  /// Whether both links join the same two pieces, in either direction.
+  /// Says whether both edges join the same two submaps, in either direction.
   bool are_parallel(std::size_t edge, std::size_t other) const;
 
-  /// What `link` is when a parallel one is `a_from_b`.
+  /// Returns the relative pose at `edge` if the `parallel` edge is `a_from_b`.
   Pose2 carried_to(std::size_t edge, std::size_t parallel, const Pose2& a_from_b) const;
 
  private:

@@ -9,10 +9,10 @@
 
 namespace shapemap {
 
-/// Where the sub-scans of keyframes are in their position, by keyframe; none: all at their nominal places.
+/// The corrections of the sweeps of each keyframe, in its frame. If empty, all sweeps are at their nominal poses.
 using SweepCorrections = std::vector<std::vector<Pose2>>;
 
-/// Refines the poses of `map` and of all sub-scans. Changes nothing where each position has one sub-scan.
+/// Refines the poses of `map` and of all sweeps. It changes nothing where each scan has one sweep.
 SweepCorrections refine_sweeps_of_map(const KeyframeGraph& graph, const RobustOptions& options,
                                       const Execution& execution, OptimizedMap& map);
 

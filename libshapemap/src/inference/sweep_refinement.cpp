@@ -18,7 +18,7 @@ class Refinement {
   Refinement(const SweepViews& views, const NodePoses& nodes, const PointToLineOptions& line,
              const SweepRefinementOptions& options, int threads)
       : views_(views), part_of_node_(nodes.component_of_node), line_(line), options_(options), threads_(threads) {
-    // All poses are solved for at once: a step of a single pair goes no farther than its lines.
+    // All poses are solved for together, so the match of one pair takes a single step.
     line_.max_iterations = 1;
     line_.stiffness = kInference.sweeps.stiffness;
     poses_ = nodes.map_from_node;
@@ -62,7 +62,7 @@ class Refinement {
 
  private:
   struct Pair {
-    std::size_t a;  ///< of `poses_`
+    std::size_t a;  ///< index in `poses_`
     std::size_t b;
     const ScanView* reference;
     const ScanView* query;
@@ -128,8 +128,8 @@ class Refinement {
   PointToLineOptions line_;
   const SweepRefinementOptions& options_;
   int threads_;
-  std::vector<Pose2> poses_;        ///< of the nodes, then of their sub-scans
-  std::vector<std::size_t> first_;  ///< per node: the first of its sub-scans in `poses_`
+  std::vector<Pose2> poses_;        ///< of the nodes, then of their sweeps
+  std::vector<std::size_t> first_;  ///< of each node: its first sweep in `poses_`
   std::vector<PoseConstraint> held_;
 };
 

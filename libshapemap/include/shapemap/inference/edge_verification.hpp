@@ -10,7 +10,7 @@
 #include "shapemap/loops/loop_detection.hpp"
 #include "shapemap/matching/visibility.hpp"
 
-/// What the scans of two pieces of a map, all of them, say of an alignment that alone joins the two.
+/// Edge verification asks all scans of two submaps about the candidates of an edge that alone joins the two.
 namespace shapemap {
 
 struct EdgeVerificationOptions {
@@ -30,40 +30,44 @@ struct EdgeVerificationOptions {
 };
 
 struct VerifiedEdge {
-  std::size_t candidate = 0;  ///< the best, or what joins; where the observer asked to stop, that of the map
-  double probability = 0.0;   ///< that it is right; 0 where nobody was asked
-  bool joins = false;         ///< the two pieces
-  std::vector<EdgeSupport> support_by_others;  ///< of each candidate; empty where nobody was asked
-  std::vector<double> parallel_support;        ///< of each candidate, by a parallel link: logarithm of odds, 0 or more
+  std::size_t candidate = 0;  ///< the most probable or joined one; that of the map where the observer asked to stop
+  double probability = 0.0;   ///< that the candidate is right; 0 where the edge was not verified
+  bool joins = false;         ///< whether the edge joins its two submaps
+  std::vector<EdgeSupport> support_by_others;  ///< of each candidate; empty where the edge was not verified
+  std::vector<double> parallel_support;        ///< of each candidate, by a parallel edge: log odds, 0 or more
 };
 
 struct VerifiedMap {
   std::vector<Pose2> map_from_node;
-  std::vector<std::size_t> submap_of_node;  ///< pieces that were joined have the number of one of them
-  std::vector<VerifiedEdge> edges;          ///< per doubtful link
+  std::vector<std::size_t> submap_of_node;  ///< joined submaps share the number of one of them
+  std::vector<VerifiedEdge> edges;          ///< of each doubtful edge
 };
 
-/// A map in submaps, each right in itself.
+/// The poses of a map whose submaps are each right in themselves.
 struct SubmapPoses {
   std::vector<Pose2> map_from_node;
-  std::vector<std::size_t> submap_of_node;  ///< a number that the nodes of a submap share
+  std::vector<std::size_t> submap_of_node;  ///< the nodes of a submap share a number
 };
 
-/// How edges are verified.
 struct EdgeVerification {
   const VisibilityOptions& visibility;
   double least_probability = 0.0;  ///< less probable edges do not join submaps
 };
 
-/// Joins the pieces (nodes with the same `submap_of_node`, right to each other) at the doubtful links, the most
-/// probable first. A candidate is worth its own score and what all pairs of scans of the two pieces then say
-/// (MapScore), as far as they are near each other along the chain, less where its two scans hold it in no direction,
-/// and more where the map has it, or where another link that joins the same two pieces says the same: where somebody
-/// walks by, all others speak against the place, but the way there and back may be known. From that follows how
-/// probable each place is, and that it is none of them (multinomial logit), the more so the less the two scans see. A
-/// place that the best only slides to, along a corridor, counts for it in part. What is less probable than
-/// EdgeVerification::least_probability is not joined; parallel links that say what was joined are joined with it, as
-/// probable as it. Stops early, with the rest of the links as they were, when the observer asks to.
+/// Joins submaps at the doubtful edges, the most probable edge first, since larger submaps tell more of the other
+/// edges.
+///
+/// A candidate is worth its own score and the balance of all pairs of scans of the two submaps (MapScore::of_pair())
+/// that are near each other along the trajectory. It is worth less where its two scans constrain it in no direction,
+/// and more where the map has it. It is also worth more where a parallel edge, which joins the same two submaps, says
+/// the same: if somebody walks by, all other scans speak against the right place, but the edges there and back may
+/// agree. A multinomial logit gives the probability of each place, and that none of the candidates is right, which is
+/// likelier the less the two scans see. A place to which the best candidate only slides, along a corridor, counts for
+/// it in part.
+///
+/// An edge that is less probable than EdgeVerification::least_probability is not joined. Parallel edges that agree with
+/// a joined one are joined with it and get its probability. When the observer asks to stop, the remaining edges stay as
+/// they were.
 VerifiedMap verify_edges(const NodeViews& views, SubmapPoses submaps, const std::vector<Edge>& doubtful,
                          const EdgeVerification& options, const Execution& execution);
 

@@ -34,18 +34,17 @@ struct RefinementOptions {
 
 struct RefinedMap {
   std::vector<Pose2> map_from_node;
-  std::vector<PoseConstraint> neighbours;  ///< the alignments that it was last solved with, beside the chain
+  std::vector<PoseConstraint> neighbours;  ///< the matches of the last solution, without the odometry
 };
 
-/// How scans are matched while a map is refined.
 struct MapRefinement {
   const MatchSearchOptions& search;
   const RefinementOptions& refinement;
 };
 
-/// Matches all scans that see the same from where the map has them, beside the constraints `odometry`, and solves for
-/// all of it; several times, since what is nearer to right matches better. It stops between two times when the observer
-/// asks to.
+/// Matches all scans that see the same, starting at the poses of the map, and solves the pose graph of these matches
+/// and the constraints `odometry` (after Lu and Milios 1997). This is repeated, because better poses give better
+/// matches. It ends after the current round when the observer asks to stop.
 RefinedMap refine_map(const std::vector<std::shared_ptr<const ScanView>>& views, std::vector<Pose2> map_from_node,
                       const std::vector<PoseConstraint>& odometry, const MapRefinement& options,
                       const Execution& execution);

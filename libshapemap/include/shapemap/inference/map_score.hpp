@@ -12,29 +12,30 @@
 
 namespace shapemap {
 
-/// How well scans that the chain does not join go together at the poses of a map: what one of them saw, the other must
-/// not have looked through. A place that is mapped twice, or two places on top of each other, tell against a map;
-/// a loop that is closed well tells for it, though not the more, the more often the place is passed. Logarithm of odds,
-/// 0 for a map in which no two stretches meet.
+/// Rates how well scans that no odometry edge joins fit each other at the poses of a map. What one scan saw, the other
+/// must not have looked through. So a place that is mapped twice, or two places that lie on each other, speak against a
+/// map. A well closed loop speaks for it, but passing the place more often adds little. The score is a logarithm of
+/// odds, and 0 for a map in which no two stretches meet.
 class MapScore {
  public:
   MapScore(std::vector<std::shared_ptr<const ScanView>> views, VisibilityOptions options, int threads)
       : views_(std::move(views)), options_(options), threads_(threads) {}
 
-  /// `ring_of_node` tells nodes that loops hold to each other. Of all others, a long chain has bent, and whether they
-  /// go together at the poses of the map tells little; without it, all are held.
+  /// Returns the score of a map. Nodes that loops hold to each other have the same `ring_of_node`. Other nodes far
+  /// apart along the trajectory count less, because the odometry between them has bent. Without `ring_of_node`, all
+  /// pairs count in full.
   double of(const std::vector<Pose2>& map_from_node, const std::vector<std::size_t>& ring_of_node = {});
 
-  /// Of the pairs of which one node is in `f` and the other in `g`, two pieces with a frame each. Estimated from a part
-  /// of them where they are many.
+  /// Returns the score of the pairs of a node of `f` and a node of `g`, where `f` and `g` are submaps with a frame
+  /// each. It is estimated from a part of the pairs where there are many.
   double between(const std::vector<Pose2>& pose_in_submap, const std::vector<std::size_t>& f,
                  const std::vector<std::size_t>& g, const Pose2& f_from_g);
 
-  /// Of one pair of scans.
+  /// Returns the score of one pair of scans.
   static double of_pair(const Visibility& visibility);
 
  private:
-  /// Of a pair, where it was last asked for.
+  /// The score of a pair at the relative pose for which it was computed last.
   struct Known {
     Pose2 a_from_b;
     double value = 0.0;
@@ -42,7 +43,7 @@ class MapScore {
 
   struct RelativePose {
     std::size_t a;
-    std::size_t b;  ///< the later one
+    std::size_t b;  ///< the later node
     Pose2 a_from_b;
     double counts = 1.0;
   };
@@ -51,10 +52,10 @@ class MapScore {
   std::vector<std::shared_ptr<const ScanView>> views_;
   VisibilityOptions options_;
   int threads_;
-  std::unordered_map<std::size_t, Known> known_;  ///< by both numbers of a pair
+  std::unordered_map<std::size_t, Known> known_;  ///< the key is computed from both nodes of a pair
 };
 
-/// Pairs of nodes nearer than `within_m` to each other, the earlier one first, in order.
+/// Returns the pairs of nodes that are less than `within_m` apart, in order, with the earlier node of each first.
 std::vector<std::pair<std::size_t, std::size_t>> near_pairs(const std::vector<Pose2>& map_from_node, double within_m);
 
 }  // namespace shapemap

@@ -13,7 +13,7 @@
 #include "shapemap/loops/loop_detection.hpp"
 #include "shapemap/matching/visibility.hpp"
 
-/// Which loops are real, and which of its alternatives each doubtful alignment of the chain takes.
+/// The map search decides which loops are closed, and which candidate each doubtful odometry edge takes.
 namespace shapemap {
 
 struct MapSearchOptions {
@@ -40,29 +40,29 @@ struct MapSearchOptions {
   }
 };
 
-/// The map that all scans go together best in.
+/// The map with the largest value that was found.
 struct MapSolution {
   std::vector<Pose2> map_from_node;
-  std::vector<int> edge_choice;        ///< per link: which alternative; kCut: none, where loops tell better
-  std::vector<std::size_t> accepted;   ///< clusters that are closed, in their order
-  std::vector<std::size_t> component;  ///< per node: the first node of all that it hangs together with
-  double value = 0.0;                  ///< logarithm of odds of all of it, up to a constant
+  std::vector<int> edge_choice;        ///< of each edge: its candidate, or kCut where loops tell better
+  std::vector<std::size_t> accepted;   ///< indices of the closed clusters, in order
+  std::vector<std::size_t> component;  ///< of each node: the first node of its component
+  double value = 0.0;                  ///< log odds of the map, up to a constant
 };
 inline constexpr int kCut = -1;
 
-/// What is known of a graph before its map is searched for.
+/// The evidence about a graph before its map is searched.
 struct GraphEvidence {
   const NodeViews& views;          ///< of each node
   const std::vector<Edge>& edges;  ///< edge i joins node i to node i + 1
   const std::vector<EdgeCandidate>& loops;
-  const std::vector<LoopCluster>& clusters;  ///< the loops that say the same, strongest first
+  const std::vector<LoopCluster>& clusters;  ///< loops that agree, strongest cluster first
 };
 
-/// Searches for the map with the largest value. The value of a map is the logarithm of its odds: of the loops that it
-/// closes, of the candidates that it takes, of how well the scans then go together (MapScore), less half of the squared
-/// errors of the pose graph. Loops that gain are closed, strongest first. Then the search looks into what contradicts
-/// the map: a strong loop that does not fit, or a doubtful edge, may show that another edge is wrong, or a loop. The
-/// search stops early, with what there is, when the observer asks to.
+/// Searches for the map with the largest value. The value of a map is the logarithm of its odds. It adds up the worth
+/// of the closed loops and how well the scans fit each other (MapScore), less the cost of unlikely candidates and half
+/// of the squared errors of the pose graph. Loops that raise the value are closed, strongest first. Then the search
+/// looks into contradictions: a strong loop that does not fit, or a doubtful edge, may show that another edge or loop
+/// is wrong. When the observer asks to stop, the best map so far is returned.
 MapSolution search_map(const GraphEvidence& evidence, const VisibilityOptions& visibility,
                        const MapSearchOptions& options, const Execution& execution);
 

@@ -12,7 +12,7 @@
 
 namespace shapemap {
 
-/// Whether places are known again.
+/// This option says whether loops are closed.
 struct LoopSwitch {
   bool close_loops = true;
 
@@ -22,7 +22,7 @@ struct LoopSwitch {
   }
 };
 
-/// How the robust method chains its alignments.
+/// These options say how the robust method chooses and doubts odometry edges.
 struct FrontEndOptions {
   double three_scan_weight = 0.5;
   double doubt_below = 0.3;
@@ -43,7 +43,7 @@ struct FrontEndOptions {
   }
 };
 
-/// All options of the robust method, from two scans to the whole map.
+/// All options of the robust method, from the match of two scans to the whole map.
 struct RobustOptions {
   MatcherOptions matcher;
   KeyframeOptions keyframes;

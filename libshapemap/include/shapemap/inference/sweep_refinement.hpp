@@ -10,7 +10,7 @@
 #include "shapemap/graph/pose_graph.hpp"
 #include "shapemap/matching/point_to_line.hpp"
 
-/// Positions whose scan is made of several, each with a small error of its own.
+/// Sweep refinement corrects the sweeps of scans that consist of several, each with a small error of its own.
 namespace shapemap {
 
 struct SweepRefinementOptions {
@@ -44,24 +44,24 @@ struct SweepRefinementOptions {
   }
 };
 
-/// Views of the sub-scans of each node, in the node's frame at their nominal headings.
+/// The views of the sweeps of each node, in the frame of the node at their nominal headings.
 using SweepViews = std::vector<std::vector<std::shared_ptr<const ScanView>>>;
 
 struct SweepPoses {
   std::vector<Pose2> map_from_node;
-  std::vector<std::vector<Pose2>> node_from_sweep;  ///< corrections: without an error, all are the identity
+  std::vector<std::vector<Pose2>> node_from_sweep;  ///< corrections; the identity where a sweep has no error
 };
 
-/// Where the nodes are, and what holds them there.
+/// The poses of the nodes, and the constraints on them.
 struct NodePoses {
   const std::vector<Pose2>& map_from_node;
   const std::vector<std::size_t>& component_of_node;
-  const std::vector<PoseConstraint>& known;  ///< holds nodes where sweeps do not
+  const std::vector<PoseConstraint>& known;  ///< constrains nodes where sweeps do not
 };
 
 /// Gives each sweep a pose of its own, tied to its nominal place in its node, and matches it to all sweeps of near
-/// nodes of the same component that share what they see; several times. A node is where its sweeps say in the mean, as
-/// their errors do not depend on each other. It stops between two rounds when the observer asks to.
+/// nodes of the same component. This is repeated. The pose of a node is the mean of what its sweeps say, because their
+/// errors are independent. It ends after the current round when the observer asks to stop.
 SweepPoses refine_sweeps(const SweepViews& views, const NodePoses& nodes, const PointToLineOptions& line,
                          const SweepRefinementOptions& options, const Execution& execution);
 
