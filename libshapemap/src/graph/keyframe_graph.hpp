@@ -44,16 +44,16 @@ struct VerifiedChoice {
 /// The edge between two consecutive keyframes, with its candidates and the one that the Viterbi algorithm chooses.
 struct OdometryEdge {
   std::vector<MatchCandidate> candidates;  ///< empty if another session starts here, or nothing fits
-  std::vector<std::vector<double>>
-      transition_scores;    ///< [candidate][candidate of the next edge], by three-scan consistency
+  /// The scores of three-scan consistency: [candidate][candidate of the next edge].
+  std::vector<std::vector<double>> transition_scores;
   std::size_t num_own = 0;  ///< number of its own candidates, best first; multi-reference candidates follow
-  double insufficient_view =
-      0.0;  ///< of the two scans; 0 where a motion was expected, since the search then includes the true pose
+  /// insufficient_view() of the two scans; 0 where a pose was expected, since the search then includes the true one.
+  double insufficient_view = 0.0;
   bool is_complete = false;  ///< whether no more candidates are searched until all scans are known
   Choice choice;
   std::optional<VerifiedChoice> verified;
-  /// The covariance of the only candidate if keyframes between the two were culled, see cull_keyframes(). That
-  /// candidate has the relative pose of the map, and is certain.
+  /// The covariance of the only candidate, if keyframes between the two were culled by cull_keyframes(). That candidate
+  /// has the relative pose of the map, and is certain.
   std::optional<Eigen::Matrix3d> culled_covariance;
 };
 

@@ -48,7 +48,7 @@ TEST(EdgeConstraint, HasTheSameCovarianceForACandidateThatJumps) {
   EXPECT_EQ(edge_constraint(graph, 0, 0).covariance, usual);
 }
 
-TEST(EdgeConstraint, OfACulledEdgeHasThePoseOfTheMap) {
+TEST(EdgeConstraint, OfACulledEdgeHasTheCovarianceOfTheMap) {
   KeyframeGraph graph = sliding_edge();
   graph.keyframes[1].expected = ExpectedPose{graph.edges[0].candidates[0].ref_from_query};
   graph.edges[0].culled_covariance = Eigen::Matrix3d::Identity();

@@ -181,7 +181,7 @@ TEST(SolvePoseGraph, CrossesTheSeamOfAngles) {
   }
 }
 
-TEST(SolvePoseGraph, MovesTheNodeWithTheLargerCovarianceMore) {
+TEST(SolvePoseGraph, WeighsConstraintsByTheirCovariance) {
   PoseConstraint sure{0, 1, {1.0, 0.0, 0.0}, Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal(), 0.0};
   PoseConstraint vague{0, 1, {2.0, 0.0, 0.0}, Eigen::Vector3d(0.03, 0.01, 0.01).asDiagonal(), 0.0};
   const PoseGraphSolution found = solve_pose_graph({{}, {}}, {sure, vague});

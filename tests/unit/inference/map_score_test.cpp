@@ -87,7 +87,7 @@ TEST(MapScore, IsBestForTheTruthAndWorseTheMoreTheMapIsBent) {
 }
 
 /// The odometry of two laps drifts. The score is compared with and without a loop that constrains the second lap.
-TEST(MapScore, OfPairsThatOnlyLongOdometryConstrainsCountsLittle) {
+TEST(MapScore, CountsPairsLittleThatOnlyLongOdometryConstrains) {
   const std::vector<Pose2> truth = test::ring_walk(2 * test::kRingLap, 2);
   const test::Views views = test::views_along(test::ring_world(1), truth);
   const std::vector<Pose2> bent = test::dead_reckoning(test::drifting_edges(truth, 1.2 * kDegree));
@@ -162,7 +162,7 @@ TEST(MapScore, GrowsByNoMoreThanOneForEachNodeHoweverOftenItsPlaceIsPassed) {
   }
 }
 
-/// Many small steps make a large one, which the pairs that the score remembers must not miss.
+/// Many small steps add up to a large one, after which the score must compare the remembered pairs again.
 TEST(MapScore, ThatRemembersDoesNotFallBehind) {
   Ring ring;
   std::vector<Pose2> creeping = ring.truth;

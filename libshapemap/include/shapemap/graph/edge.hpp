@@ -18,8 +18,7 @@ struct EdgeCandidate {
   /// The log odds that the candidate is right, by the two scans alone. All candidates of an odometry edge share an
   /// unknown constant in it.
   double score = 0.0;
-  double best_deviation_m =
-      0.0;  ///< best_deviation_m() of the match; 0, which means well constrained, where it is not needed
+  double best_deviation_m = 0.0;  ///< best_deviation_m() of the match where it is needed; 0 means well constrained
 };
 
 /// An edge has the candidates for the relative pose of two nodes: consecutive ones, or two that a loop may join.

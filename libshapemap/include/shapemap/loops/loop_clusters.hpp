@@ -22,7 +22,7 @@ double worth_of_member(const EdgeCandidate& member);
 /// consistent relative poses.
 struct LoopCluster {
   std::vector<EdgeCandidate> members;  ///< most probable first
-  double strength = 0.0;               ///< sum of the log odds of the best member of each node
+  double strength = 0.0;               ///< smaller sum of both stretches over the worth of the best member of each node
   std::size_t num_a = 0;               ///< number of distinct nodes in the earlier stretch
   std::size_t num_b = 0;               ///< number of distinct nodes in the later stretch
 };
