@@ -14,7 +14,7 @@ void check(std::size_t num_nodes, const PoseConstraint& constraint) {
   }
 }
 
-/// Bridges of a graph (Tarjan 1974), without recursion: chains are long.
+/// Finds the bridges of a graph (Tarjan 1974) without recursion, which would be as deep as the graph is long.
 class BridgeSearch {
  public:
   BridgeSearch(std::size_t num_nodes, const std::vector<PoseConstraint>& constraints)
@@ -36,7 +36,7 @@ class BridgeSearch {
  private:
   struct Step {
     std::size_t node;
-    std::size_t by;  ///< the constraint that led here; none for the first
+    std::size_t by;  ///< the constraint that led here; kNone for the first node
     std::size_t next = 0;
   };
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -68,7 +68,7 @@ class BridgeSearch {
   }
 
   const std::vector<PoseConstraint>& constraints_;
-  std::vector<std::vector<std::size_t>> at_;  ///< constraints of each node
+  std::vector<std::vector<std::size_t>> at_;  ///< indices of the constraints of each node
   std::vector<std::size_t> entered_;
   std::vector<std::size_t> lowest_;
   std::size_t time_ = 0;

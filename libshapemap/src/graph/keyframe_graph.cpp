@@ -8,10 +8,11 @@
 namespace shapemap {
 namespace {
 
-/// A link that may be nothing is one choice as well.
+/// Returns at least 1, since an edge without candidates still is one state of the Viterbi algorithm.
 std::size_t num_choices(const OdometryEdge& edge) { return std::max<std::size_t>(edge.candidates.size(), 1); }
 
-/// Both what the scans tell and that the sensor cannot jump: along a bare corridor, only that.
+/// Combines the covariance of the match with that of the usual motion, because the sensor cannot jump: along a bare
+/// corridor, only the usual motion constrains the pose.
 Eigen::Matrix3d with_usual_motion(const Eigen::Matrix3d& covariance, bool is_expected) {
   const StepNumbers& steps = kGraph.steps;
   const double usual_m = is_expected ? kUsualSurprise_m : steps.usual_slip_m;
@@ -21,8 +22,8 @@ Eigen::Matrix3d with_usual_motion(const Eigen::Matrix3d& covariance, bool is_exp
   return 0.5 * (both + both.transpose());
 }
 
-/// What the choice of a link leads by over all that is another place. Of places that were not found it is only known
-/// that they are no better than the worst that was.
+/// Returns the margin of the chosen candidate of an edge over all candidates at other places. A place that the search
+/// did not find can be as good as its worst candidate, so the margin is at most the one over that.
 double margin_to_other_places(const KeyframeGraph& graph, std::size_t edge) {
   const OdometryEdge& of = graph.edges[edge];
   const Choice& choice = of.choice;

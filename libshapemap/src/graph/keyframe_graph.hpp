@@ -15,83 +15,84 @@
 
 namespace shapemap {
 
-/// A scan that others are aligned to.
+/// A scan that others are matched to.
 struct Keyframe {
   std::size_t scan_index = 0;
-  std::size_t session = 0;  ///< the recording that it is from
+  std::size_t session = 0;  ///< number of the recording that it is from
   std::shared_ptr<const ScanView> view;
   std::optional<ExpectedPose> expected;  ///< see ScanTracker::expected()
-  /// Of each sub-scan by itself where the position has several, else empty.
+  /// The views of the single sweeps; empty if the scan has only one.
   std::vector<std::shared_ptr<const ScanView>> sweep_views;
 };
 
-/// A scan that a keyframe stands for: taken from nearly the same place.
+/// A scan that a keyframe can replace, since it was taken from nearly the same place.
 struct AttachedScan {
   std::size_t scan_index = 0;
   std::size_t keyframe = 0;
   MatchCandidate pose;  ///< in the frame of the keyframe
 };
 
-/// What all scans of both sides say of a link that was in doubt: see verify_doubtful_edges().
+/// The verdict of all scans of both submaps on a doubtful edge, see verify_doubtful_edges().
 struct VerifiedChoice {
-  std::size_t candidate = 0;                   ///< the best
-  double probability = 0.0;                    ///< that it is right
-  std::size_t in_map = 0;                      ///< the hypothesis that the map had until then
-  std::vector<EdgeSupport> support_by_others;  ///< of each hypothesis
-  std::vector<double> parallel_support;        ///< of each hypothesis: see VerifiedEdge
+  std::size_t candidate = 0;                   ///< index of the best candidate
+  double probability = 0.0;                    ///< probability that it is right
+  std::size_t in_map = 0;                      ///< index of the candidate that the map had before
+  std::vector<EdgeSupport> support_by_others;  ///< of each candidate
+  std::vector<double> parallel_support;        ///< of each candidate, see VerifiedEdge
 };
 
-/// What a keyframe may be to the one before it, and which of it the scans around choose.
+/// The edge between two consecutive keyframes, with its candidates and the one that the Viterbi algorithm chooses.
 struct OdometryEdge {
-  std::vector<MatchCandidate> candidates;  ///< none: another log starts here, or nothing fits
-  std::vector<std::vector<double>>
-      transition_scores;    ///< [hypothesis][that of the next link]: how well the two go together
-  std::size_t num_own = 0;  ///< so many, the first, are the best first; the rest is by way of scans further back
-  double insufficient_view =
-      0.0;                   ///< of the two scans; 0 where a motion was expected: the true place is then looked for
-  bool is_complete = false;  ///< nothing more will be looked for until all is known
+  std::vector<MatchCandidate> candidates;  ///< empty if another session starts here, or nothing fits
+  /// The scores of three-scan consistency: [candidate][candidate of the next edge].
+  std::vector<std::vector<double>> transition_scores;
+  std::size_t num_own = 0;  ///< number of its own candidates, best first; multi-reference candidates follow
+  /// insufficient_view() of the two scans; 0 where a pose was expected, since the search then includes the true one.
+  double insufficient_view = 0.0;
+  bool is_complete = false;  ///< whether no more candidates are searched until all scans are known
   Choice choice;
   std::optional<VerifiedChoice> verified;
-  /// Keyframes between the two were retired, see cull_keyframes(): there is one hypothesis, which is that of the map
-  /// and certain, and this is its covariance.
+  /// The covariance of the only candidate, if keyframes between the two were culled by cull_keyframes(). That candidate
+  /// has the relative pose of the map, and is certain.
   std::optional<Eigen::Matrix3d> culled_covariance;
 };
 
 struct KeyframeGraph {
   std::vector<Keyframe> keyframes;
   std::vector<AttachedScan> attached;
-  std::vector<OdometryEdge> edges;  ///< links[i] joins keyframe i to keyframe i + 1
+  std::vector<OdometryEdge> edges;  ///< edges[i] joins keyframe i to keyframe i + 1
 };
 
 /// Returns the index of the first keyframe whose scan is number `scan_index` or a later one.
 std::size_t keyframe_of(const KeyframeGraph& graph, std::size_t scan_index);
 
-/// As logarithm of odds against it, of a keyframe that is found there, seen from the one before it: by habit where
-/// nothing was to be expected.
+/// Returns the log odds against a keyframe that is found at the pose `found` in the frame of the one before it. The
+/// motion prior gives them where no pose was expected.
 double surprise(const Keyframe& keyframe, const MotionPrior& prior, const Pose2& found);
 
-/// What hypothesis number `k` of a link says. It is held at least as well as a motion is usually known before, best
-/// where scans follow each other closely, whichever hypothesis: none must be taken for being held less, and a corridor
-/// must not shrink because its scans slide.
+/// Returns the constraint of candidate number `k` of an edge. Its covariance is limited by the usual motion, in the
+/// same way for all candidates: a weak constraint must not make a candidate cheap, and a corridor must not shrink
+/// because its scans slide along it.
 PoseConstraint edge_constraint(const KeyframeGraph& graph, std::size_t edge, std::size_t k);
 
-/// match_probability() of the place that the chain chose; 1 where nothing is asked any more, 0 where there is none.
+/// Returns match_probability() of the chosen candidate; 1 for a culled edge, and 0 for an edge without candidates.
 double edge_probability(const OdometryEdge& edge);
 
-/// That hypothesis number `k` of a link is right, by its two scans; `margin` is its score above the best other place.
+/// Returns the probability that candidate number `k` of an edge is right, by its two scans. `margin` is its score minus
+/// that of the best candidate at another place.
 double probability_by_two_scans(const OdometryEdge& edge, std::size_t k, double margin);
 
-/// That the link is right, by all that is known but loops: what is stated in the end.
+/// Returns the probability that the edge is right, by all evidence but loops. The result of the map states this one.
 double stated_probability(const OdometryEdge& edge);
 
-/// By the motions that are as good as certain, and that the scans hold in every direction.
+/// Learns the motion prior from the edges that are as good as certain and that scans constrain in every direction.
 MotionPrior motion_prior(const KeyframeGraph& graph);
 
-/// OdometryEdge::bonus of links that may be anything to each other.
+/// Returns OdometryEdge::transition_scores of zero, which prefer no pair of candidates.
 std::vector<std::vector<double>> no_transition_scores(const OdometryEdge& edge, const OdometryEdge& next);
 
-/// Each link takes the hypothesis that goes together best with the links before and after it; its margin is that to the
-/// best that is another place. Along a bare corridor, hypotheses that slide along it are none.
+/// Chooses the best sequence of candidates by viterbi(). The margin of an edge is the one to the best candidate at
+/// another place; candidates that only slide along a bare corridor are at the same place.
 void choose_candidates(KeyframeGraph& graph);
 
 }  // namespace shapemap

@@ -9,7 +9,7 @@
 
 namespace shapemap {
 
-/// Knows the alignments of keyframes as those of their positions.
+/// Keeps the matches of keyframes under the numbers of their scans, which do not change when keyframes are culled.
 class KeyframeMatchCache : public MatchCache {
  public:
   KeyframeMatchCache(const KeyframeGraph& graph, MatchCache& of_scans) : graph_(graph), of_scans_(of_scans) {}

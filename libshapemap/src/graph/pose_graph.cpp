@@ -16,7 +16,7 @@
 namespace shapemap {
 namespace {
 
-using Parameters = std::array<double, 3>;  // x, y, theta; the angle is not wrapped in between
+using Parameters = std::array<double, 3>;  // x, y, theta; the solver does not wrap the angle
 
 Eigen::Matrix3d square_root_information(const Eigen::Matrix3d& covariance) {
   const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
@@ -26,14 +26,14 @@ Eigen::Matrix3d square_root_information(const Eigen::Matrix3d& covariance) {
   return llt.matrixL().solve(Eigen::Matrix3d::Identity());
 }
 
-/// The solver would say so on standard error, and go on.
+/// Throws, since the solver would only print a warning and go on.
 void require_finite(const Pose2& pose) {
   if (!std::isfinite(pose.x_m) || !std::isfinite(pose.y_m) || !std::isfinite(pose.theta_rad)) {
     throw std::invalid_argument("a pose is not finite");
   }
 }
 
-/// Weighted difference of a relative pose and the measured one, in the frame of the first node.
+/// The difference of a relative pose and the measured one in the frame of the first node, weighted by the covariance.
 class RelativePoseError : public ceres::SizedCostFunction<3, 3, 3> {
  public:
   explicit RelativePoseError(const PoseConstraint& constraint)
@@ -74,7 +74,7 @@ class RelativePoseError : public ceres::SizedCostFunction<3, 3, 3> {
 
 ceres::Solver::Options solver_options(int max_iterations) {
   ceres::Solver::Options options;
-  // One thread and Eigen's solver: no other makes the same bits on every run.
+  // Only one thread and Eigen's solver give the same bits on every run.
   options.num_threads = 1;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;

@@ -19,8 +19,8 @@ double length_of(const Eigen::Matrix3d& covariance) {
   return covariance(0, 0) + covariance(1, 1) + lever_m * lever_m * covariance(2, 2);
 }
 
-/// What an error of a constraint does to a point beyond it, in the frame of the map: it shifts all that is beyond, and
-/// turns it about the node `b` of the constraint.
+/// Returns the covariance, in the frame of the map, that a constraint gives to a node at `point` beyond it. An error of
+/// the constraint shifts all nodes beyond it, and turns them about its node `b`.
 Eigen::Matrix3d effect(const PoseConstraint& constraint, const std::vector<Pose2>& map_from_node, const Point2& point) {
   const Pose2& from = map_from_node[constraint.a];
   const Point2 arm = point - map_from_node[constraint.b].translation();

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
-/// The best sum of all links on one side of each alternative, without its own score.
+/// The largest sum of scores of all edges on one side of each candidate, without its own score.
 using Sums = std::vector<std::vector<double>>;
 
 Sums empty_sums(const ViterbiChain& chain) {

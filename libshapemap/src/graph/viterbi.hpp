@@ -6,21 +6,21 @@
 
 namespace shapemap {
 
-/// A chain of choices: each link takes one of its alternatives, and neighbouring links may go together well or badly.
+/// A sequence of edges, each of which takes one of its candidates. Pairs of candidates of neighbouring edges have
+/// scores as well.
 struct ViterbiChain {
-  std::vector<std::vector<double>> scores;  ///< [link][alternative]; no link is without alternatives
-  std::vector<std::vector<std::vector<double>>>
-      transition_scores;  ///< [link][alternative][alternative of the next link]
+  std::vector<std::vector<double>> scores;  ///< [edge][candidate]; each edge has at least one candidate
+  std::vector<std::vector<std::vector<double>>> transition_scores;  ///< [edge][candidate][candidate of the next edge]
 };
 
 struct Choice {
   std::size_t candidate = 0;
-  double margin = 0.0;         ///< what the best chain with this alternative is better by than the best without it
-  std::vector<double> behind;  ///< per alternative: what the best chain of all is better by than the best with it
+  double margin = 0.0;         ///< score of the best sequence with this candidate minus the best without it
+  std::vector<double> behind;  ///< of each candidate: score of the best sequence minus the best with it
 };
 
-/// The chain with the largest sum (Viterbi 1967), and how much each of its choices matters. `full_margin` is the margin
-/// of a link with one alternative only.
+/// Returns the sequence of candidates with the largest sum of scores (Viterbi 1967). `full_margin` is the margin of an
+/// edge with only one candidate, and the largest margin.
 std::vector<Choice> viterbi(const ViterbiChain& chain, double full_margin);
 
 }  // namespace shapemap

@@ -11,7 +11,7 @@ namespace {
 using WorthOfNodes = std::map<std::size_t, double>;
 using WorthOfClusters = std::map<std::size_t, double>;
 
-/// The best member of each node, of both stretches of a cluster.
+/// The worth of the best member at each node, for both stretches of a cluster.
 struct Stretches {
   WorthOfNodes a;
   WorthOfNodes b;
@@ -22,7 +22,7 @@ void keep_best(WorthOfNodes& best, std::size_t key, double worth) {
   found->second = std::max(found->second, worth);
 }
 
-/// What all clusters make of the nodes of a stretch.
+/// Returns for each cluster the worth of its members at the nodes of a stretch.
 WorthOfClusters claims_on(const WorthOfNodes& stretch, const std::map<std::size_t, WorthOfClusters>& by_node) {
   WorthOfClusters claims;
   for (const auto& [node, unused] : stretch) {

@@ -8,14 +8,14 @@
 
 namespace shapemap {
 
-/// A cluster that says of some of the same nodes that they are elsewhere, and how strongly, by these nodes alone.
+/// A cluster that may put nodes of another cluster at a different place, and its strength at the shared nodes alone.
 struct ConflictingLoop {
   std::size_t cluster = 0;
   double strength = 0.0;
 };
 
-/// For each cluster, all others that share nodes with one of its two stretches. Whether they contradict it depends on
-/// the map: two earlier visits to one place are no rivals.
+/// Returns for each cluster all others that share nodes with one of its two stretches. Whether these contradict it
+/// depends on the map: loops to two earlier visits of one place are not in conflict.
 std::vector<std::vector<ConflictingLoop>> conflicting_loops(const std::vector<LoopCluster>& clusters);
 
 }  // namespace shapemap

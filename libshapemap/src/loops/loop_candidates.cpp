@@ -72,7 +72,7 @@ void find_loops(const KeyframeGraph& graph, std::size_t end, const LoopSearch& b
   known.num_bridged = end_of_edges;
   try {
     add(cross_edge_matches(views, doubtful, search));
-  } catch (const Interrupted&) {  // what was read is made one map without
+  } catch (const Interrupted&) {  // The map is made without cross-edge matches.
   }
 }
 

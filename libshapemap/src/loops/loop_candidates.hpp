@@ -11,21 +11,24 @@
 
 namespace shapemap {
 
-/// What has been found out about which keyframes see the same.
+/// The loop candidates found so far, and how far the search has come.
 struct LoopCandidates {
   std::vector<EdgeCandidate> candidates;
-  std::size_t num_searched = 0;  ///< the first so many keyframes have been compared to those before them
-  std::size_t num_bridged = 0;   ///< and of the first so many links the doubtful ones have been bridged
+  std::size_t num_searched = 0;  ///< number of keyframes that have been matched to earlier ones
+  std::size_t num_bridged = 0;   ///< number of edges that have cross-edge matches if they are doubtful
 };
 
 NodeViews views_of(const KeyframeGraph& graph);
+
+/// Returns the odometry edges, each with the chosen candidate first.
 std::vector<Edge> edge_choices(const KeyframeGraph& graph);
 
-/// Index of hypothesis number `rank` of a link, when that which the chain chose comes first, as in Edge.
+/// Returns the index in `edge` of candidate number `rank` of edge_choices().
 std::size_t ranked_candidate(const OdometryEdge& edge, std::size_t rank);
 
-/// Adds what there is to know of the first `end` keyframes; nothing is done twice. The store of `search` is by
-/// positions. Stops with what was found by then when the observer asks to.
+/// Adds the loop candidates and cross-edge matches of the first `end` keyframes that `known` does not have yet. The
+/// keys of the cache in `search` have the indices of scans. When the observer asks to stop, it keeps those found by
+/// then.
 void find_loops(const KeyframeGraph& graph, std::size_t end, const LoopSearch& search, LoopCandidates& known);
 
 }  // namespace shapemap

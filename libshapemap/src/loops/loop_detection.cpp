@@ -15,7 +15,7 @@
 namespace shapemap {
 namespace {
 
-/// Pairs that are worked on together, and between which the observer is asked. Part of no result.
+/// The observer is asked after each block of so many pairs. The number changes no result.
 constexpr std::size_t kBlock = 64;
 
 struct Pair {
@@ -23,13 +23,13 @@ struct Pair {
   std::size_t b;
 };
 
-/// Where most of the pairs have little in common, all rotations would be tried on each.
+/// Most pairs have little in common, and the search would try all rotations on each of them.
 MatchSearchOptions without_all_rotations(MatchSearchOptions search) {
   search.candidates.all_rotations_below = -std::numeric_limits<double>::infinity();
   return search;
 }
 
-/// For very many pairs: a search with less effort, which other scans of the same two stretches make up for.
+/// Reduces the effort for very many pairs. A match that is missed is made up for by other scans of the same stretches.
 MatchSearchOptions quick(MatchSearchOptions search) {
   search.candidates.rotation_peaks = std::max(1, search.candidates.rotation_peaks * 3 / 4);
   search.candidates.shape_segments = 0;
@@ -38,17 +38,18 @@ MatchSearchOptions quick(MatchSearchOptions search) {
   return search;
 }
 
-/// How pairs are aligned, and what of it is kept.
+/// These settings say how pairs are matched, and which candidates are kept.
 struct PairSearch {
   MatchSearchOptions options;
   SearchKind kind;
-  std::size_t most_poses;  ///< of each pair
+  std::size_t most_poses;  ///< largest number of candidates of each pair
   double least_probability;
   Execution execution;
   MatchCache* store;
 };
 
-/// That the two scans are of one place, and that it is where the alignment says.
+/// Returns the log odds that the two scans are of one place, and that the match has its position. A match that leaves a
+/// direction unconstrained says little about the position.
 double log_odds_of_place(double probability, const Eigen::Matrix3d& covariance) {
   const double p = std::clamp(probability, 1e-9, 1.0 - 1e-9);
   return log_odds_of(p) - std::log(std::max(1.0, worst_deviation_m(covariance) / kGraph.steps.held_m));
@@ -68,7 +69,7 @@ std::vector<EdgeCandidate> aligned(const NodeViews& views, const Pair& pair, con
   return found;
 }
 
-/// Adds to `all`. Throws Interrupted when the observer asks to stop.
+/// Adds the candidates of `pairs` to `all`, in order. Throws Interrupted when the observer asks to stop.
 void align_all(const NodeViews& views, const std::vector<Pair>& pairs, const PairSearch& search,
                std::vector<EdgeCandidate>& all) {
   RunObserver& observer = search.execution.observer;
@@ -112,7 +113,7 @@ std::vector<EdgeCandidate> likely_loops(const NodeViews& views, std::size_t firs
   std::vector<EdgeCandidate> found;
   try {
     align_all(views, pairs, quickly, found);
-  } catch (const Interrupted&) {  // those that were found are of use
+  } catch (const Interrupted&) {  // The candidates found so far are of use.
   }
   return found;
 }

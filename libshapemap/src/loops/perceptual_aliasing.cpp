@@ -9,7 +9,7 @@
 namespace shapemap {
 namespace {
 
-/// How surely the chain knows where its nodes are to each other.
+/// Knows the relative poses of nodes by sure odometry edges, and their variance.
 class SureChain {
  public:
   SureChain(const std::vector<Edge>& edges, const std::vector<Pose2>& map_of_odometry, double sure_probability)
@@ -35,14 +35,14 @@ class SureChain {
 
   const std::vector<Pose2>& map_from_node_;
   std::vector<std::size_t> submap_;
-  std::vector<double> variance_m2_;  ///< from the first node on
+  std::vector<double> variance_m2_;  ///< of the position, summed over the sure edges from the first node on
 };
 
 }  // namespace
 
 std::vector<EdgeCandidate> without_aliases(const std::vector<EdgeCandidate>& candidates, const std::vector<Edge>& edges,
                                            const std::vector<Pose2>& map_of_odometry, double sure_probability) {
-  // What is less likely counts for nothing among others anyway.
+  // A match with less log odds than this has no worth in a cluster anyway.
   const double least_log_odds = -kLoops.members.prior;
   const std::size_t near = kLoops.aliasing.near;
   const std::size_t count = map_of_odometry.size();

@@ -9,7 +9,7 @@
 namespace shapemap {
 namespace {
 
-/// Bins are centred about 0, 45, 90, ... degrees, where most of the angles in buildings are.
+/// The bins are centred at 0, 45, 90, ... degrees, because most angles in buildings are near these.
 std::size_t angle_bin(double angle_rad) {
   const double turns = angle_rad / (2.0 * kPi) + 0.5 / static_cast<double>(kDescriptorAngles);
   const auto bin = static_cast<std::size_t>((turns - std::floor(turns)) * static_cast<double>(kDescriptorAngles));
@@ -55,7 +55,7 @@ std::vector<LikelyPlace> PlaceIndex::most_alike(std::size_t node, std::size_t en
   const auto less_alike = [](const LikelyPlace& a, const LikelyPlace& b) {
     return a.similarity != b.similarity ? a.similarity < b.similarity : a.node > b.node;
   };
-  std::make_heap(places.begin(), places.end(), less_alike);  // few are needed in order
+  std::make_heap(places.begin(), places.end(), less_alike);  // A heap is enough, since few places are needed in order.
   std::vector<LikelyPlace> apart;
   while (apart.size() < count && !places.empty()) {
     std::pop_heap(places.begin(), places.end(), less_alike);

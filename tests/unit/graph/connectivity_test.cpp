@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 
 PoseConstraint edge(std::size_t a, std::size_t b) { return {a, b, {}, Eigen::Matrix3d::Identity(), 0.0}; }
 
-/// Any two nodes, some of them joined several times.
+/// Returns edges between random nodes, some of which are joined several times.
 std::vector<PoseConstraint> random_multigraph(std::mt19937& rng, std::size_t num_nodes, std::size_t num_edges) {
   std::uniform_int_distribution<std::size_t> any(0, num_nodes - 1);
   std::bernoulli_distribution again(0.2);
@@ -32,7 +32,7 @@ std::vector<PoseConstraint> random_multigraph(std::mt19937& rng, std::size_t num
   return edges;
 }
 
-/// What can be reached from `first` without edge number `without`.
+/// Returns which nodes can be reached from `first` without edge number `without`.
 std::vector<bool> flooded(std::size_t num_nodes, const std::vector<PoseConstraint>& edges, std::size_t first,
                           std::size_t without) {
   std::vector<bool> reached(num_nodes, false);
@@ -48,7 +48,7 @@ std::vector<bool> flooded(std::size_t num_nodes, const std::vector<PoseConstrain
   return reached;
 }
 
-/// Sparse, so that there are many parts and many edges that nothing goes round; or dense.
+/// Checks sparse graphs, which have many components and many bridges, and dense ones.
 template <class Check>
 void on_random_graphs(const Check& check) {
   std::mt19937 rng(1);
@@ -59,7 +59,7 @@ void on_random_graphs(const Check& check) {
   }
 }
 
-TEST(ConnectedParts, AreThoseOfAFloodFill) {
+TEST(ConnectedComponents, AreThoseOfAFloodFill) {
   on_random_graphs([](std::size_t num_nodes, const std::vector<PoseConstraint>& edges) {
     const std::vector<std::size_t> part = connected_components(num_nodes, edges);
     ASSERT_EQ(part.size(), num_nodes);
@@ -72,7 +72,7 @@ TEST(ConnectedParts, AreThoseOfAFloodFill) {
   });
 }
 
-TEST(ConnectedParts, DoNotDependOnTheOrderOfTheConstraints) {
+TEST(ConnectedComponents, DoNotDependOnTheOrderOfTheConstraints) {
   std::mt19937 rng(2);
   for (int round = 0; round < 50; ++round) {
     std::vector<PoseConstraint> edges = random_multigraph(rng, 30, 20);
@@ -82,7 +82,7 @@ TEST(ConnectedParts, DoNotDependOnTheOrderOfTheConstraints) {
   }
 }
 
-TEST(LoneConstraints, AreThoseWithoutWhichTheirNodesFallApart) {
+TEST(BridgeEdges, AreThoseWithoutWhichTheirNodesAreDisconnected) {
   int num_lone = 0;
   int num_held = 0;
   on_random_graphs([&](std::size_t num_nodes, const std::vector<PoseConstraint>& edges) {
@@ -97,13 +97,13 @@ TEST(LoneConstraints, AreThoseWithoutWhichTheirNodesFallApart) {
   EXPECT_GT(num_held, 100);
 }
 
-TEST(LoneConstraints, OfParallelOnesNoneIsLone) {
+TEST(BridgeEdges, IncludeNoParallelEdges) {
   EXPECT_THAT(bridge_edges(3, {edge(0, 1), edge(1, 2)}), ElementsAre(true, true));
   EXPECT_THAT(bridge_edges(3, {edge(0, 1), edge(1, 2), edge(1, 0)}), ElementsAre(false, true, false));
   EXPECT_THAT(bridge_edges(3, {edge(0, 1), edge(1, 2), edge(0, 2)}), ElementsAre(false, false, false));
 }
 
-TEST(GraphParts, OfALongChainNeedNoDeepStack) {
+TEST(Connectivity, OfALongGraphNeedsNoDeepStack) {
   constexpr std::size_t kMany = 300000;
   std::vector<PoseConstraint> chain;
   for (std::size_t i = 0; i + 1 < kMany; ++i) chain.push_back(edge(i, i + 1));
@@ -113,7 +113,7 @@ TEST(GraphParts, OfALongChainNeedNoDeepStack) {
   EXPECT_EQ(bridge_edges(kMany, chain), std::vector<bool>(kMany, false));
 }
 
-TEST(GraphParts, RefuseNodesThatDoNotExist) {
+TEST(Connectivity, RefusesNodesThatDoNotExist) {
   EXPECT_TRUE(connected_components(0, {}).empty());
   EXPECT_TRUE(bridge_edges(0, {}).empty());
   for (const PoseConstraint& bad : {edge(0, 2), edge(2, 0), edge(1, 1)}) {

@@ -10,7 +10,7 @@
 namespace shapemap {
 namespace {
 
-/// A link that the scans do not hold along the way.
+/// Returns a graph of one edge, which the scans do not constrain along the way.
 KeyframeGraph sliding_edge() {
   KeyframeGraph graph =
       test::KnownGraph(test::two_laps(), {test::two_laps().truth[0], test::two_laps().truth[1]}).graph;
@@ -23,7 +23,7 @@ KeyframeGraph sliding_edge() {
 
 double deviation_m(const KeyframeGraph& graph) { return std::sqrt(edge_constraint(graph, 0, 0).covariance(0, 0)); }
 
-TEST(EdgeConstraint, IsHeldByTheUsualMotionWhereTheScansSayLittle) {
+TEST(EdgeConstraint, IsLimitedByTheUsualMotionWhereTheScansConstrainLittle) {
   KeyframeGraph graph = sliding_edge();
   const Eigen::Matrix3d by_scans = pose_covariance(graph.edges[0].candidates[0].fit);
   EXPECT_GT(std::sqrt(by_scans(0, 0)), 5.0);
@@ -39,8 +39,8 @@ TEST(EdgeConstraint, IsHeldByTheUsualMotionWhereTheScansSayLittle) {
   EXPECT_THAT(edge_constraint(graph, 0, 0).a_from_b, test::HasSameBits(pose));
 }
 
-/// Else a jump would be the cheaper alternative: it could be pulled wherever loops want it.
-TEST(EdgeConstraint, IsHeldAlikeWhereAnAlternativeIsAJump) {
+/// Otherwise a candidate that jumps would be cheap, because loops could pull it anywhere.
+TEST(EdgeConstraint, HasTheSameCovarianceForACandidateThatJumps) {
   KeyframeGraph graph = sliding_edge();
   graph.keyframes[1].expected = ExpectedPose{graph.edges[0].candidates[0].ref_from_query};
   const Eigen::Matrix3d usual = edge_constraint(graph, 0, 0).covariance;
@@ -48,14 +48,14 @@ TEST(EdgeConstraint, IsHeldAlikeWhereAnAlternativeIsAJump) {
   EXPECT_EQ(edge_constraint(graph, 0, 0).covariance, usual);
 }
 
-TEST(EdgeConstraint, OfASettledMapIsWhatTheMapSays) {
+TEST(EdgeConstraint, OfACulledEdgeHasTheCovarianceOfTheMap) {
   KeyframeGraph graph = sliding_edge();
   graph.keyframes[1].expected = ExpectedPose{graph.edges[0].candidates[0].ref_from_query};
   graph.edges[0].culled_covariance = Eigen::Matrix3d::Identity();
   EXPECT_EQ(edge_constraint(graph, 0, 0).covariance, Eigen::Matrix3d::Identity());
 }
 
-TEST(Surprise, IsByHabitWhereNothingWasToBeExpected) {
+TEST(Surprise, IsByTheMotionPriorWhereNoPoseWasExpected) {
   const MotionPrior prior(std::vector<Pose2>(50, Pose2{1.0, 0.0, 0.0}));
   const Pose2 back{-1.0, 0.0, 0.0};
   Keyframe keyframe;
@@ -65,7 +65,7 @@ TEST(Surprise, IsByHabitWhereNothingWasToBeExpected) {
   EXPECT_EQ(surprise(keyframe, prior, back), 0.0);
 }
 
-/// `off` the first, and a little worse.
+/// Adds a candidate at `off` from the first one, whose score is worse by `behind`.
 void add_candidate(const Pose2& off, double behind, KeyframeGraph& graph) {
   OdometryEdge& edge = graph.edges[0];
   MatchCandidate other = edge.candidates[0];
@@ -75,7 +75,7 @@ void add_candidate(const Pose2& off, double behind, KeyframeGraph& graph) {
   edge.candidates.push_back(other);
 }
 
-TEST(ChooseCandidates, WhatSlidesAlongACorridorIsNoOtherPlace) {
+TEST(ChooseCandidates, TakesASlideAlongACorridorForTheSamePlace) {
   KeyframeGraph graph = sliding_edge();
   add_candidate({0.8, 0.0, 0.0}, 0.1, graph);
   add_candidate({-0.8, 0.0, 2 * kDegree}, 0.2, graph);
@@ -93,18 +93,18 @@ TEST(ChooseCandidates, WhatSlidesAlongACorridorIsNoOtherPlace) {
   }
 }
 
-/// All that were found slide along the corridor: of another place it is only known that it is no better than these.
-TEST(ChooseCandidates, WhatWasNotFoundMayBeAsGoodAsTheWorstThatWas) {
+/// All candidates only slide along the corridor. A place that was not found can be as good as the worst of them.
+TEST(ChooseCandidates, LimitsTheMarginByTheWorstCandidate) {
   KeyframeGraph graph = sliding_edge();
   add_candidate({0.8, 0.0, 0.0}, 0.1, graph);
   add_candidate({-0.8, 0.0, 0.0}, 2.5, graph);
   graph.edges[0].num_own = 3;
-  add_candidate({0.4, 0.0, 0.0}, 9.0, graph);  // by way of a scan further back
+  add_candidate({0.4, 0.0, 0.0}, 9.0, graph);  // This is a multi-reference candidate.
   choose_candidates(graph);
   EXPECT_NEAR(graph.edges[0].choice.margin, 2.5, 1e-9);
 }
 
-TEST(ChooseCandidates, WhereScansHoldThePlaceSlidingIsOne) {
+TEST(ChooseCandidates, TakesASlideForAnotherPlaceWhereTheScansConstrainIt) {
   KeyframeGraph graph = sliding_edge();
   graph.edges[0].candidates[0].fit.information(0, 0) = 400.0;
   add_candidate({0.8, 0.0, 0.0}, 0.1, graph);
@@ -112,7 +112,7 @@ TEST(ChooseCandidates, WhereScansHoldThePlaceSlidingIsOne) {
   EXPECT_NEAR(graph.edges[0].choice.margin, 0.1, 1e-9);
 }
 
-TEST(StatedProbability, IsLessOfScansThatSeeLittle) {
+TEST(StatedProbability, IsLowerForScansThatSeeLittle) {
   OdometryEdge edge = sliding_edge().edges[0];
   edge.choice.margin = 3.0;
   const double all_round = stated_probability(edge);
@@ -120,7 +120,7 @@ TEST(StatedProbability, IsLessOfScansThatSeeLittle) {
   EXPECT_LT(log_odds_of(stated_probability(edge)), log_odds_of(all_round) - 1.0);
 }
 
-TEST(MotionHabitOfAChain, IsThatOfLinksThatAreCertainAndHeld) {
+TEST(MotionPriorOfAGraph, IsLearnedFromCertainAndConstrainedEdges) {
   const test::Laps& laps = test::two_laps();
   KeyframeGraph graph = test::KnownGraph(laps).graph;
   const Pose2 usual = graph.edges[5].candidates[0].ref_from_query;

@@ -25,7 +25,7 @@ using Error = Eigen::Vector3d;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// By the definition: where node b is for node a, less where it was measured.
+/// Returns the error by its definition: the pose of node b in the frame of node a, minus the measured one.
 Error error_of(const PoseConstraint& constraint, const std::vector<Pose2>& poses) {
   const Pose2 found = inverse(poses[constraint.a]) * poses[constraint.b];
   return {found.x_m - constraint.a_from_b.x_m, found.y_m - constraint.a_from_b.y_m,
@@ -43,7 +43,7 @@ double cost_of(const std::vector<PoseConstraint>& constraints, const std::vector
   return sum;
 }
 
-/// Dense Gauss-Newton with differences for derivatives, a matrix for all nodes, and weights for the loss. Node 0 stays.
+/// Solves the graph by dense Gauss-Newton with numerical derivatives, and weights for the loss. Node 0 is fixed.
 std::vector<Pose2> by_dense_gauss_newton(std::vector<Pose2> poses, const std::vector<PoseConstraint>& constraints) {
   constexpr double kStep = 1e-6;
   const auto size = static_cast<Eigen::Index>(3 * poses.size());
@@ -121,11 +121,11 @@ TEST(SolvePoseGraph, RecoversAConsistentGraphExactly) {
   }
 }
 
-TEST(SolvePoseGraph, KeepsTheFirstNodeOfEachPartAndAllThatNothingHolds) {
+TEST(SolvePoseGraph, KeepsTheFirstNodeOfEachComponentAndAllWithoutConstraints) {
   std::mt19937 rng(3);
   const std::vector<Pose2> start = test::random_walk(rng, 9);
   const std::vector<Pose2> wanted = test::random_walk(rng, 9);
-  // {1, 4, 6}, {2, 3} and {5, 8}; 0 and 7 by themselves.
+  // The components are {1, 4, 6}, {2, 3} and {5, 8}; nodes 0 and 7 are single.
   const std::vector<PoseConstraint> constraints{
       test::measured(wanted, 6, 4, 0.0, rng), test::measured(wanted, 4, 1, 0.0, rng),
       test::measured(wanted, 6, 1, 0.0, rng), test::measured(wanted, 3, 2, 0.0, rng),
@@ -143,7 +143,7 @@ TEST(SolvePoseGraph, KeepsTheFirstNodeOfEachPartAndAllThatNothingHolds) {
   in_part(5, 8);
 }
 
-TEST(SolvePoseGraph, CauchysLossCapsWhatAnOutlierDoes) {
+TEST(SolvePoseGraph, CauchysLossLimitsTheEffectOfAnOutlier) {
   std::mt19937 rng(4);
   const std::vector<Pose2> truth = test::random_walk(rng, 20);
   std::vector<PoseConstraint> constraints = test::odometry_and_loops(truth, 15, 0.01, rng);
@@ -164,7 +164,7 @@ TEST(SolvePoseGraph, CauchysLossCapsWhatAnOutlierDoes) {
 }
 
 TEST(SolvePoseGraph, CrossesTheSeamOfAngles) {
-  // Headings run through a full turn, and start a whole turn apart from where they belong.
+  // The headings run through a full turn, and the initial ones are off by a whole turn.
   std::mt19937 rng(5);
   std::vector<Pose2> truth;
   for (int k = 0; k < 24; ++k)
@@ -181,7 +181,7 @@ TEST(SolvePoseGraph, CrossesTheSeamOfAngles) {
   }
 }
 
-TEST(SolvePoseGraph, TheWorseMeasuredGivesWay) {
+TEST(SolvePoseGraph, WeighsConstraintsByTheirCovariance) {
   PoseConstraint sure{0, 1, {1.0, 0.0, 0.0}, Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal(), 0.0};
   PoseConstraint vague{0, 1, {2.0, 0.0, 0.0}, Eigen::Vector3d(0.03, 0.01, 0.01).asDiagonal(), 0.0};
   const PoseGraphSolution found = solve_pose_graph({{}, {}}, {sure, vague});

@@ -15,12 +15,12 @@ Eigen::Matrix3d diagonal(double x_m, double y_m, double theta_rad) {
   return Eigen::Vector3d(x_m * x_m, y_m * y_m, theta_rad * theta_rad).asDiagonal();
 }
 
-/// A constraint that says what the map has.
+/// Returns a constraint with the relative pose of two nodes in the map.
 PoseConstraint between(const std::vector<Pose2>& map, std::size_t a, std::size_t b, const Eigen::Matrix3d& covariance) {
   return {a, b, inverse(map[a]) * map[b], covariance, 0.0};
 }
 
-/// `pose` with an error of that covariance, as a constraint has it: added to x, y and theta.
+/// Returns `pose` with a random error of that covariance, added to x, y and theta as in a constraint.
 Pose2 disturbed(const Pose2& pose, const Eigen::Matrix3d& covariance, std::mt19937& rng) {
   std::normal_distribution<double> normal;
   const Eigen::Vector3d noise(normal(rng), normal(rng), normal(rng));
@@ -28,7 +28,7 @@ Pose2 disturbed(const Pose2& pose, const Eigen::Matrix3d& covariance, std::mt199
   return {pose.x_m + error.x(), pose.y_m + error.y(), pose.theta_rad + error.z()};
 }
 
-/// Constraints along the way 0, 1, 2, ..., some of them from the later node to the earlier one.
+/// A sequence of nodes with a constraint between neighbours, some of them from the later node to the earlier one.
 struct Way {
   explicit Way(unsigned seed) {
     std::mt19937 rng(seed);
@@ -47,8 +47,8 @@ struct Way {
 
 class AlongAWay : public ::testing::TestWithParam<unsigned> {};
 
-/// Against an estimate from many disturbed ways.
-TEST_P(AlongAWay, IsTheSpreadOfManyWays) {
+/// The covariance is compared to an estimate from many disturbed sequences.
+TEST_P(AlongAWay, IsTheSpreadOfManyDisturbedSequences) {
   const Way way(GetParam());
   const std::size_t last = way.map.size() - 1;
   const Eigen::Matrix3d found = RelativeCovariance(way.map, way.constraints).between(0, last);
@@ -84,7 +84,7 @@ TEST(RelativeCovariance, IsThatOfTheConstraintBetweenNeighbours) {
   EXPECT_TRUE(RelativeCovariance(way.map, way.constraints).between(c.a, c.b).isApprox(c.covariance, 1e-9));
 }
 
-TEST(RelativeCovariance, TakesTheBetterWay) {
+TEST(RelativeCovariance, TakesTheShorterPath) {
   const std::vector<Pose2> map{{}, {1, 0, 0}, {2, 0, 0}};
   std::vector<PoseConstraint> constraints{between(map, 0, 1, diagonal(0.01, 0.01, 0.001)),
                                           between(map, 1, 2, diagonal(0.01, 0.01, 0.001)),

@@ -40,7 +40,7 @@ double sum_of(const ViterbiChain& chain, const std::vector<std::size_t>& taken) 
   return sum;
 }
 
-/// The next combination of alternatives, as an odometer counts; false after the last.
+/// Goes on to the next combination of candidates, like a counter, and returns false after the last.
 bool advance(const ViterbiChain& chain, std::vector<std::size_t>& taken) {
   for (std::size_t edge = 0; edge < taken.size(); ++edge) {
     if (++taken[edge] < chain.scores[edge].size()) return true;
@@ -49,10 +49,10 @@ bool advance(const ViterbiChain& chain, std::vector<std::size_t>& taken) {
   return false;
 }
 
-/// The best choices and their margins, from the sums of all combinations.
+/// Returns the best choices and their margins from the sums of all combinations.
 std::vector<Choice> by_enumeration(const ViterbiChain& chain) {
   constexpr double kNever = -std::numeric_limits<double>::infinity();
-  std::vector<std::vector<double>> best;  // [link][alternative]: of the chains with it
+  std::vector<std::vector<double>> best;  // [edge][candidate]: best sum of the sequences with it
   for (const std::vector<double>& scores : chain.scores) best.emplace_back(scores.size(), kNever);
   std::vector<std::size_t> taken(chain.scores.size(), 0);
   do {
@@ -75,11 +75,11 @@ std::vector<Choice> by_enumeration(const ViterbiChain& chain) {
   return choices;
 }
 
-TEST(BestChoices, AreThoseOfAllCombinations) {
+TEST(Viterbi, GivesThoseOfAllCombinations) {
   std::mt19937 rng(1);
   for (int round = 0; round < 500; ++round) {
     const std::size_t num_edges = 1 + static_cast<std::size_t>(round) % 6;
-    const double spread = round % 3 == 0 ? 30.0 : 3.0;  // some beyond the full margin
+    const double spread = round % 3 == 0 ? 30.0 : 3.0;  // Some margins are beyond the full one.
     const ViterbiChain chain = random_chain(rng, num_edges, 4, spread);
     const std::vector<Choice> expected = by_enumeration(chain);
     const std::vector<Choice> found = viterbi(chain, kFullMargin);
@@ -92,7 +92,7 @@ TEST(BestChoices, AreThoseOfAllCombinations) {
   }
 }
 
-TEST(BestChoices, TogetherMakeOneChainOfTheLargestSum) {
+TEST(Viterbi, GivesOneSequenceWithTheLargestSum) {
   std::mt19937 rng(2);
   for (int round = 0; round < 200; ++round) {
     const ViterbiChain chain = random_chain(rng, 5, 4, 3.0);
@@ -106,7 +106,7 @@ TEST(BestChoices, TogetherMakeOneChainOfTheLargestSum) {
   }
 }
 
-TEST(BestChoices, OfATieHaveNoMarginAndTakeTheFirst) {
+TEST(Viterbi, GivesATieNoMarginAndTakesTheFirst) {
   ViterbiChain chain;
   chain.scores = {{1.0, 1.0, 0.5}};
   chain.transition_scores.resize(1);
@@ -116,7 +116,7 @@ TEST(BestChoices, OfATieHaveNoMarginAndTakeTheFirst) {
   EXPECT_EQ(choices[0].margin, 0.0);
 }
 
-TEST(BestChoices, WithoutAnAlternativeHaveTheFullMargin) {
+TEST(Viterbi, GivesASingleCandidateTheFullMargin) {
   ViterbiChain chain;
   chain.scores = {{-5.0}};
   chain.transition_scores.resize(1);
@@ -124,7 +124,7 @@ TEST(BestChoices, WithoutAnAlternativeHaveTheFullMargin) {
   EXPECT_TRUE(viterbi({}, 7.0).empty());
 }
 
-TEST(BestChoices, OfALongChainNeedNoTime) {
+TEST(Viterbi, IsFastForALongSequence) {
   std::mt19937 rng(3);
   EXPECT_EQ(viterbi(random_chain(rng, 20000, 7, 3.0), kFullMargin).size(), 20000U);
 }

@@ -19,7 +19,7 @@ using ::testing::SizeIs;
 constexpr std::size_t kEdge = 6;
 const Pose2 kTurnedAway{0.8, -0.6, kPi / 2};
 
-/// A walk round a corner of the ring. Link 6 is cut for a loop that lays what comes after it elsewhere.
+/// A walk round a corner of the ring. Edge 6 is cut for a wrong loop, which moves all nodes after it.
 struct CutForALoop {
   explicit CutForALoop(double strength, const test::Scanner& scanner = test::full_circle())
       : views(test::views_along(test::ring_world(1), truth, 1, scanner)) {
@@ -55,7 +55,7 @@ struct CutForALoop {
   OptimizedMap map;
 };
 
-TEST(DoubtfulEdges, AWeakLoopForWhichALinkWasCutIsQuestioned) {
+TEST(DoubtfulEdges, AWeakLoopForWhichAnEdgeWasCutIsVerified) {
   CutForALoop walk(5.0);
   ASSERT_TRUE(walk.verify());
   EXPECT_THAT(walk.map.loops, IsEmpty()) << "the scans of both sides speak against it";
@@ -82,7 +82,7 @@ TEST(DoubtfulEdges, NoneAreLookedForWhereNoneAreWanted) {
   for (std::size_t n = 0; n < before.size(); ++n) EXPECT_THAT(walk.map.map_from_keyframe[n], HasSameBits(before[n]));
 }
 
-TEST(DoubtfulEdges, WhatAllScansSayIsTheProbabilityOfTheLink) {
+TEST(DoubtfulEdges, TheEvidenceOfAllScansIsTheProbabilityOfTheEdge) {
   CutForALoop walk(5.0);
   EXPECT_FALSE(walk.graph.edges[kEdge].verified);
   walk.verify();
@@ -103,7 +103,7 @@ TEST(DoubtfulEdges, ScansThatSeeLittleLeaveMoreDoubt) {
   EXPECT_GT(doubt(0.2), 5.0 * doubt(0.0));
 }
 
-TEST(DoubtfulEdges, NothingIsStatedOfALinkWhereTheObserverAskedToStop) {
+TEST(DoubtfulEdges, NoVerdictIsStatedWhereTheObserverAskedToStop) {
   struct Impatient : RunObserver {
     bool keep_going() override { return false; }
   } impatient;
@@ -113,7 +113,7 @@ TEST(DoubtfulEdges, NothingIsStatedOfALinkWhereTheObserverAskedToStop) {
   for (const OdometryEdge& edge : walk.graph.edges) EXPECT_FALSE(edge.verified);
 }
 
-/// Nothing is ever so probable.
+/// No edge reaches the probability that is asked for.
 TEST(DoubtfulEdges, WhatStaysInDoubtSplitsTheMapAndOpensTheLoop) {
   CutForALoop walk(5.0);
   RobustOptions options;
@@ -140,7 +140,8 @@ TEST(DoubtfulEdges, WhatIsNotClearIsSearchedAgain) {
   EXPECT_GT(candidates_of(1.0), candidates_of(0.0));
 }
 
-/// As in the chain. Else places far away, of which a thorough search finds many, outdo the true one together.
+/// The new candidates get the same motion prior as the old ones. Otherwise the many distant places that a thorough
+/// search finds would outweigh the true one together.
 TEST(DoubtfulEdges, WhatIsSearchedAgainScoresLessFarFromWhereTheScanWasToBeExpected) {
   CutForALoop walk(5.0);
   const ExpectedPose expected{walk.step(kEdge)};
@@ -159,8 +160,8 @@ TEST(DoubtfulEdges, WhatIsSearchedAgainScoresLessFarFromWhereTheScanWasToBeExpec
   EXPECT_GT(most, 4.0);
 }
 
-/// Of scans that look one way as well.
-TEST(DoubtfulEdges, ALinkThatTheOthersContradictIsReplaced) {
+/// This must hold for scans with half a field of view as well.
+TEST(DoubtfulEdges, AnEdgeThatTheOthersContradictIsReplaced) {
   CutForALoop walk(5.0, test::half_circle());
   walk.map.loops.clear();
   walk.map.loop_constrained[kEdge] = false;

@@ -11,7 +11,7 @@
 namespace shapemap {
 namespace {
 
-/// A candidate that its two scans hold exactly unless a covariance says otherwise.
+/// Returns a candidate that is exact by its two scans unless `covariance` is given.
 EdgeCandidate scored(const Pose2& a_from_b, double score, const Eigen::Matrix3d& covariance = Eigen::Matrix3d::Zero()) {
   return {0, 0, a_from_b, covariance, score};
 }
@@ -23,7 +23,7 @@ using ::testing::ElementsAre;
 const Pose2 kTurnedAway{0.8, -0.6, kPi / 2};
 const Pose2 kTooFar{1.4, 0.3, 0.0};
 
-/// A walk round a corner of the ring, in pieces that are right in themselves but not to each other.
+/// A walk round a corner of the ring, in submaps that are right in themselves but wrong relative to each other.
 struct Torn {
   explicit Torn(const std::vector<std::size_t>& tears, const Pose2& wrong = kTurnedAway, std::size_t count = 14)
       : truth(test::ring_walk(count, 2, 4.0)), views(test::views_along(test::ring_world(1), truth)) {
@@ -60,7 +60,7 @@ struct Torn {
   std::vector<Edge> doubts;
 };
 
-/// Per link: the candidate that joins, or kCut.
+/// Returns for each edge the candidate that joins the submaps, or kCut.
 std::vector<int> choices(const VerifiedMap& verified) {
   std::vector<int> chosen;
   for (const VerifiedEdge& edge : verified.edges)
@@ -68,8 +68,8 @@ std::vector<int> choices(const VerifiedMap& verified) {
   return chosen;
 }
 
-/// By itself, the right candidate is the worst.
-TEST(VerifyEdges, TakesWhatAllScansSayAndNotTheTwoAlone) {
+/// The right candidate has the lowest score of its own.
+TEST(VerifyEdges, TakesTheCandidateOfAllScansAndNotOfTheTwoAlone) {
   Torn map({6});
   map.doubts[0].candidates.push_back(scored(map.true_step(6), 0.0));
   const VerifiedMap verified = map.verified();
@@ -81,14 +81,14 @@ TEST(VerifyEdges, TakesWhatAllScansSayAndNotTheTwoAlone) {
 TEST(VerifyEdges, RepairsSeveralOnlyOneOfWhichIsRight) {
   Torn map({3, 8});
   map.doubts[0].candidates.push_back(scored(map.true_step(3), 0.0));
-  map.doubts[1].candidates[0].a_from_b = map.true_step(8);  // the map is right here
+  map.doubts[1].candidates[0].a_from_b = map.true_step(8);  // The map is right at this edge.
   map.doubts[1].candidates.push_back(scored(map.true_step(8) * kTurnedAway, 1.0));
   const VerifiedMap verified = map.verified();
   EXPECT_THAT(choices(verified), ElementsAre(2, 0));
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 1e-6);
 }
 
-/// The scores are those that the two scans give.
+/// The candidates have the scores that their two scans give.
 TEST(VerifyEdges, SplitsWhereNoCandidateIsRight) {
   Torn map({6});
   for (EdgeCandidate& candidate : map.doubts[0].candidates) {
@@ -108,7 +108,7 @@ TEST(VerifyEdges, JoinsNothingWhenNothingIsProbableEnough) {
   EXPECT_THAT(choices(map.verified(1.0)), ElementsAre(kCut));
 }
 
-/// However good both are: the rival's score goes from far behind to far ahead.
+/// This must hold however good both are, so the score of the other place goes from far behind to far ahead.
 TEST(VerifyEdges, SplitsWhereTwoPlacesFitAlike) {
   Torn map({6});
   const Pose2 away = map.doubts[0].candidates[0].a_from_b;
@@ -121,7 +121,7 @@ TEST(VerifyEdges, SplitsWhereTwoPlacesFitAlike) {
   EXPECT_THAT(chosen, ElementsAre(0, kCut, 1));
 }
 
-/// Along a corridor, and the more the less far; not across it.
+/// A small error along a corridor leaves the map nearly right, a large one or one across it does not.
 TEST(VerifyEdges, IsNearlyRightWhereItSlides) {
   Torn map({6});
   const auto probability = [&](const Point2& off_m, const Eigen::Vector3d& deviations) {
@@ -139,8 +139,8 @@ TEST(VerifyEdges, IsNearlyRightWhereItSlides) {
   EXPECT_NEAR(probability({0.0, 0.5}, along_x), probability({0.0, 0.5}, held), 1e-9);
 }
 
-/// Nearly the same twice leaves no doubt about where the piece is.
-TEST(VerifyEdges, CountsNoNeighbourAsARival) {
+/// Two candidates that are nearly the same leave no doubt about the pose of the submap.
+TEST(VerifyEdges, DoesNotCountTheSamePlaceAsAnother) {
   Torn map({6});
   map.doubts[0].candidates.push_back(scored(map.true_step(6), 0.0));
   map.doubts[0].candidates.push_back(scored(map.true_step(6) * Pose2{0.05, 0.0, 0.5 * kDegree}, 0.0));
@@ -150,8 +150,8 @@ TEST(VerifyEdges, CountsNoNeighbourAsARival) {
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 0.15);
 }
 
-/// The map's pose is aligned to more than the two scans.
-TEST(VerifyEdges, LeavesThePieceWhereTheMapHasItWhenThatIsTheSamePlace) {
+/// The pose of the map is better, since it is matched to more than the two scans.
+TEST(VerifyEdges, LeavesTheSubmapWhereTheMapHasItWhenThatIsTheSamePlace) {
   Torn map({6}, Pose2{0.05, 0.0, 0.5 * kDegree});
   map.doubts[0].candidates = {scored(map.doubts[0].candidates[0].a_from_b, 0.0), scored(map.true_step(6), 5.0)};
   const VerifiedMap verified = map.verified();
@@ -159,7 +159,7 @@ TEST(VerifyEdges, LeavesThePieceWhereTheMapHasItWhenThatIsTheSamePlace) {
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.poses), 1e-6);
 }
 
-TEST(VerifyEdges, IsLessSureWithARivalAndWhereAllAreBad) {
+TEST(VerifyEdges, IsLessSureWithAnotherPlaceAndWhereAllAreBad) {
   Torn map({6});
   map.doubts[0].candidates.push_back(scored(map.true_step(6), 10.0));
   const double alone = map.verified().edges[0].probability;
@@ -178,7 +178,7 @@ TEST(VerifyEdges, IsLessSureOfScansThatSeeLittle) {
   EXPECT_LT(map.verified().edges[0].probability, sure - 0.05);
 }
 
-/// Nodes 4 to `last` are a piece of their own; before and after it are one, as loops make them.
+/// Nodes 4 to `last` are a submap of their own; the nodes before and after it are one submap, as if a loop joined them.
 struct TornTwice : Torn {
   explicit TornTwice(std::size_t last = 8, std::size_t count = 14) : Torn({3, last}, kTurnedAway, count) {
     for (std::size_t n = last + 1; n < truth.size(); ++n) {
@@ -192,7 +192,7 @@ struct TornTwice : Torn {
   }
 };
 
-TEST(VerifyEdges, BelievesWhatTheWayThereAndTheWayBackBothSay) {
+TEST(VerifyEdges, TakesTheCandidateThatParallelEdgesAgreeOn) {
   TornTwice map;
   const VerifiedMap both = map.verified(1.0);
   EXPECT_GT(both.edges[0].parallel_support[1], 0.0);
@@ -205,7 +205,7 @@ TEST(VerifyEdges, BelievesWhatTheWayThereAndTheWayBackBothSay) {
   EXPECT_LT(one.edges[0].probability, both.edges[0].probability);
 }
 
-TEST(VerifyEdges, JoinsParallelLinksTogether) {
+TEST(VerifyEdges, JoinsParallelEdgesTogether) {
   TornTwice map;
   map.doubts[0].candidates[1].score = 8.0;
   const VerifiedMap verified = map.verified();
@@ -214,7 +214,7 @@ TEST(VerifyEdges, JoinsParallelLinksTogether) {
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 1e-6);
 }
 
-TEST(VerifyEdges, LeavesParallelLinksOutThatSayOtherwise) {
+TEST(VerifyEdges, LeavesOutParallelEdgesThatDisagree) {
   TornTwice map;
   map.doubts[0].candidates[1].score = 8.0;
   map.doubts[1].candidates[1].a_from_b = map.true_step(8) * kTooFar;
@@ -225,8 +225,8 @@ TEST(VerifyEdges, LeavesParallelLinksOutThatSayOtherwise) {
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 1e-6);
 }
 
-/// Too far along the chain to tell each other anything, but not to be held together.
-TEST(VerifyEdges, JoinsParallelLinksThatAreFarApart) {
+/// The two edges are too far apart to support each other, but must be joined together nevertheless.
+TEST(VerifyEdges, JoinsParallelEdgesThatAreFarApart) {
   TornTwice map(24, 30);
   map.doubts[0].candidates[1].score = 8.0;
   map.doubts[1].candidates[1].a_from_b = map.true_step(24) * Pose2{0.5, 0.0, 0.0};
@@ -236,8 +236,8 @@ TEST(VerifyEdges, JoinsParallelLinksThatAreFarApart) {
   EXPECT_LT(test::worst_off_m(verified.map_from_node, map.truth), 1e-6);
 }
 
-/// What nobody was asked about stays, unless it contradicts what was joined.
-TEST(VerifyEdges, StopsBetweenTwoLinksThatContradictEachOther) {
+/// An edge that was not verified yet stays, unless it contradicts an edge that joined two submaps.
+TEST(VerifyEdges, StopsBetweenTwoEdgesThatContradictEachOther) {
   struct StopsAfter : RunObserver {
     explicit StopsAfter(int asked) : left(asked) {}
     bool keep_going() override { return left-- > 0; }
@@ -254,7 +254,7 @@ TEST(VerifyEdges, StopsBetweenTwoLinksThatContradictEachOther) {
   EXPECT_THAT(chosen(1), ElementsAre(1, kCut));
 }
 
-TEST(VerifyEdges, IsLessSureOfAPlaceThatTwoScansHoldInNoDirection) {
+TEST(VerifyEdges, IsLessSureOfAPlaceThatTwoScansConstrainInNoDirection) {
   Torn map({6});
   map.doubts[0].candidates.push_back(scored(map.true_step(6), 0.0));
   const double held = map.verified().edges[0].probability;
@@ -262,7 +262,7 @@ TEST(VerifyEdges, IsLessSureOfAPlaceThatTwoScansHoldInNoDirection) {
   EXPECT_LT(map.verified().edges[0].probability, held - 0.01);
 }
 
-TEST(VerifyEdges, TellsTheBestOfWhatIsNotJoined) {
+TEST(VerifyEdges, StatesTheBestCandidateOfAnEdgeThatDoesNotJoin) {
   Torn map({6});
   map.doubts[0].candidates.push_back(scored(map.true_step(6), 0.0));
   const VerifiedEdge best = map.verified(1.0).edges[0];

@@ -16,7 +16,7 @@ using test::kRingLap;
 using ::testing::Each;
 using ::testing::ElementsAre;
 
-/// Once round the ring and a bit more, with a loop where it meets itself and one that is wrong.
+/// A walk of a little more than one lap, with a loop where it meets itself and a loop that is wrong.
 struct Ring {
   explicit Ring(double drift_rad = 0.0) : edges(test::drifting_edges(truth, drift_rad)) {}
 
@@ -39,7 +39,7 @@ struct Ring {
   MapSearchOptions options;
 };
 
-TEST(LoopChoiceOfMap, TakesTheAlternativesAndLoopsThatAgreeWithTheMap) {
+TEST(HypothesisOfMap, TakesTheCandidatesAndLoopsThatAgreeWithTheMap) {
   Ring ring;
   ring.spoil(20, true);
   const MapHypothesis choice = ring.problem().of_map(ring.truth);
@@ -49,7 +49,7 @@ TEST(LoopChoiceOfMap, TakesTheAlternativesAndLoopsThatAgreeWithTheMap) {
   EXPECT_GT(choice.value, ring.problem().chain_alone().value + 20.0);
 }
 
-TEST(MapHypothesis, RingsAreWhatLoopsHold) {
+TEST(MapHypothesis, RingsAreTheNodesThatLoopsConstrain) {
   Ring ring;
   MapObjective problem = ring.problem();
   const std::vector<std::size_t> of_chain = problem.rings(problem.chain_alone());
@@ -61,7 +61,7 @@ TEST(MapHypothesis, RingsAreWhatLoopsHold) {
   EXPECT_EQ(problem.rings(cut), of_chain) << "without a loop, none is held";
 }
 
-TEST(LoopChoiceOfMap, CutsALinkThatDisagreesWhereALoopHoldsTheRest) {
+TEST(HypothesisOfMap, CutsAnEdgeThatDisagreesWhereALoopJoinsTheRest) {
   Ring ring;
   ring.spoil(20, false);
   const MapHypothesis choice = ring.problem().of_map(ring.truth);
@@ -70,7 +70,7 @@ TEST(LoopChoiceOfMap, CutsALinkThatDisagreesWhereALoopHoldsTheRest) {
   EXPECT_LT(test::worst_off_m(choice.map_from_node, ring.truth), 0.2);
 }
 
-TEST(LoopChoiceOfMap, LeavesWithTheChainWhatNothingElseJoins) {
+TEST(HypothesisOfMap, KeepsEdgesThatDisagreeWhereNothingElseJoinsTheNodes) {
   Ring ring;
   ring.clusters.clear();
   ring.spoil(20, false);
@@ -83,7 +83,7 @@ TEST(LoopChoiceOfMap, LeavesWithTheChainWhatNothingElseJoins) {
   }
 }
 
-TEST(LoopChoiceOfMap, OfAnotherLogIsNotJoined) {
+TEST(HypothesisOfMap, DoesNotJoinAnotherSession) {
   Ring ring;
   ring.edges[20] = {};
   MapObjective problem = ring.problem();
@@ -94,8 +94,8 @@ TEST(LoopChoiceOfMap, OfAnotherLogIsNotJoined) {
   EXPECT_THAT(choice.accepted, Each(0));
 }
 
-/// That the same nodes look like another place as well counts against a loop, unless the map has them there, too.
-TEST(LoopChoiceWorth, IsLessByARivalThatTheMapContradicts) {
+/// A conflicting loop makes a loop worth less, unless the map agrees with both.
+TEST(WorthOfLoops, IsLessByAConflictingLoopThatTheMapContradicts) {
   Ring ring;
   ring.clusters = {test::cluster_of(ring.truth, {0, kRingLap, 4}, 18.0),
                    test::cluster_of(ring.truth, {20, kRingLap, 4}, 11.0, {4.0, 0.0, 0.0}),
@@ -109,8 +109,8 @@ TEST(LoopChoiceWorth, IsLessByARivalThatTheMapContradicts) {
   EXPECT_NEAR(agreeing.worth_in(agreeing.of_map(ring.truth), 0), 18.0, 1e-9);
 }
 
-/// Two stretches that look alike make any number of loops that are wrong together.
-TEST(LoopChoiceValue, OfLoopsBetweenTheSameStretchesIsAtMostTheCap) {
+/// Between two stretches that look alike, any number of loops can be wrong together.
+TEST(MapValue, OfLoopsBetweenTheSameStretchesIsAtMostTheCap) {
   Ring ring;
   const auto gain_of_second = [&](std::size_t a, std::size_t b) {
     ring.clusters = {test::cluster_of(ring.truth, {0, kRingLap, 8}, 18.0),
@@ -131,8 +131,8 @@ TEST(LoopChoiceValue, OfLoopsBetweenTheSameStretchesIsAtMostTheCap) {
   EXPECT_EQ(gain_of_second(4, kRingLap + 4), 0.0) << "loops count for nothing, and nothing is divided by it";
 }
 
-/// A link of which one alternative fits well is not cut lightly, though it is not sure which.
-TEST(LoopChoiceValue, OfACutLinkIsLessTheBetterOneOfItsAlternativesFits) {
+/// Cutting an edge with a well-fitting candidate is expensive, even if it is not sure which candidate is right.
+TEST(MapValue, OfACutEdgeIsLessTheBetterOneOfItsCandidatesFits) {
   Ring ring;
   ring.spoil(20, false);
   const double poor = ring.problem().of_map(ring.truth).value;
@@ -142,7 +142,7 @@ TEST(LoopChoiceValue, OfACutLinkIsLessTheBetterOneOfItsAlternativesFits) {
   EXPECT_NEAR(poor - well.value, std::log(999.0) + 2.0 - (std::log(0.4 / 0.6) + 2.0), 1e-6);
 }
 
-TEST(LoopChoiceValue, IsLessByUnusualTurns) {
+TEST(MapValue, IsLessByUnusualTurns) {
   Ring free;
   free.options.step_penalty = 0.0;
   Ring costly;
@@ -162,8 +162,8 @@ TEST(LoopChoiceValue, IsLessByUnusualTurns) {
   EXPECT_GT(penalty(map), 4.0);
 }
 
-/// Without loops that agree, the chain is what it was.
-TEST(LoopChoiceOfMap, OfTheChainIsTheChain) {
+/// The hypothesis of the map by odometry alone is that map again.
+TEST(HypothesisOfMap, OfTheMapByOdometryIsThatMap) {
   Ring ring(1.0 * kDegree);
   MapObjective problem = ring.problem();
   const MapHypothesis chain = problem.chain_alone();

@@ -13,7 +13,7 @@ namespace {
 
 using test::HasSameBits;
 
-/// Half of the ring, with each pose a little off.
+/// A walk along half of the ring, with a small error in each pose.
 struct Blurred {
   Blurred() {
     std::mt19937 rng(5);
@@ -51,8 +51,8 @@ TEST(RefineMap, WithoutARoundLeavesAllAsItIs) {
   for (std::size_t n = 0; n < refined.size(); ++n) EXPECT_THAT(refined[n], HasSameBits(map.poses[n]));
 }
 
-/// The chain alone is fulfilled from the start.
-TEST(RefineMap, WithoutNeighboursKeepsToTheChain) {
+/// The poses agree with the odometry edges from the start, so these alone change nothing.
+TEST(RefineMap, WithoutNeighboursKeepsToTheOdometryEdges) {
   const Blurred map;
   for (const bool none_allowed : {false, true}) {
     RefinementOptions options;

@@ -67,7 +67,7 @@ TEST(MapScore, OfAPairGrowsWithWhatAgreesAndFallsWithWhatIsCrossed) {
   }
 }
 
-/// Once round, and a few steps more.
+/// A walk of one lap and a few steps more.
 struct Ring {
   std::vector<Pose2> truth = test::ring_walk(test::kRingLap + 8, 2);
   test::Views views = test::views_along(test::ring_world(1), truth);
@@ -86,8 +86,8 @@ TEST(MapScore, IsBestForTheTruthAndWorseTheMoreTheMapIsBent) {
   }
 }
 
-/// Two laps of a chain that is bent: where a loop should hold the second to the first, and where none does.
-TEST(MapScore, OfWhatOnlyALongChainHoldsCountsLittle) {
+/// The odometry of two laps drifts. The score is compared with and without a loop that constrains the second lap.
+TEST(MapScore, CountsPairsLittleThatOnlyLongOdometryConstrains) {
   const std::vector<Pose2> truth = test::ring_walk(2 * test::kRingLap, 2);
   const test::Views views = test::views_along(test::ring_world(1), truth);
   const std::vector<Pose2> bent = test::dead_reckoning(test::drifting_edges(truth, 1.2 * kDegree));
@@ -101,7 +101,7 @@ TEST(MapScore, OfWhatOnlyALongChainHoldsCountsLittle) {
   EXPECT_LE(score.of(truth, one_each), score.of(truth));
 }
 
-TEST(MapScore, TellsAgainstTwoPlacesOnTopOfEachOther) {
+TEST(MapScore, IsAgainstTwoPlacesOnTopOfEachOther) {
   std::mt19937 rng(2);
   std::vector<Pose2> poses;
   test::Views views;
@@ -126,7 +126,7 @@ TEST(MapScore, IsNoneWhereNoTwoStretchesMeet) {
   EXPECT_EQ(MapScore({}, {}, 1).of({}), 0.0);
 }
 
-/// Where all are: not how the map lies.
+/// The score depends on relative poses alone.
 TEST(MapScore, DoesNotDependOnTheFrameOfTheMap) {
   Ring ring;
   std::vector<Pose2> elsewhere = ring.truth;
@@ -146,7 +146,7 @@ TEST(MapScore, ThatRemembersGivesWhatAFreshOneGives) {
   EXPECT_NEAR(ring.score.of(ring.truth), of_truth, 0.05 * std::abs(of_truth - of_bent));
 }
 
-/// Going round again and again tells less and less: else the more places are laid on each other, the better.
+/// Each further lap must count less. Otherwise a map would gain by laying many places on each other.
 TEST(MapScore, GrowsByNoMoreThanOneForEachNodeHoweverOftenItsPlaceIsPassed) {
   double before = 0.0;
   for (const std::size_t laps : {1U, 2U, 4U}) {
@@ -162,7 +162,7 @@ TEST(MapScore, GrowsByNoMoreThanOneForEachNodeHoweverOftenItsPlaceIsPassed) {
   }
 }
 
-/// Many small steps are a large one: what is remembered must not creep along.
+/// Many small steps add up to a large one, after which the score must compare the remembered pairs again.
 TEST(MapScore, ThatRemembersDoesNotFallBehind) {
   Ring ring;
   std::vector<Pose2> creeping = ring.truth;
@@ -181,7 +181,7 @@ TEST(MapScore, IsTheSameToTheBitForAnyNumberOfThreads) {
   EXPECT_EQ(MapScore(ring.views, {}, 3).of(ring.truth), ring.score.of(ring.truth));
 }
 
-/// Two pieces of a map, each moved to a frame of its own, and what they say of each other.
+/// Two submaps of a map, each in a frame of its own.
 struct TwoPieces {
   TwoPieces(const std::vector<Pose2>& truth, const std::vector<std::size_t>& of_f, std::vector<std::size_t> of_g)
       : f(of_f), g(std::move(of_g)), pose(truth) {
@@ -190,13 +190,13 @@ struct TwoPieces {
 
   double between(MapScore& score, const Pose2& moved = {}) const { return score.between(pose, f, g, moved * f_from_g); }
 
-  /// How much a map is worth in which the pieces lie so, more than one in which they are far from each other.
+  /// Returns the score of a map with the submaps at these poses, minus that of a map with both far from each other.
   double by_whole_maps(const test::Views& views, const Pose2& moved = {}) const {
     std::vector<Pose2> together = pose;
     std::vector<Pose2> apart = pose;
     for (const std::size_t n : g) together[n] = moved * f_from_g * pose[n];
     for (const std::size_t n : g) apart[n].x_m += 1000.0;
-    for (std::size_t n = 0; n < pose.size(); ++n) {  // what belongs to neither is far from both
+    for (std::size_t n = 0; n < pose.size(); ++n) {  // All other nodes are far from both.
       if (std::count(f.begin(), f.end(), n) + std::count(g.begin(), g.end(), n) > 0) continue;
       together[n] = apart[n] = {0.0, 1e4 * static_cast<double>(n + 1), 0.0};
     }
@@ -209,7 +209,7 @@ struct TwoPieces {
   std::vector<Pose2> pose;
 };
 
-/// Nodes `first` to `last`, without it, that `wanted` wants.
+/// Returns the nodes from `first` to `last` - 1 for which `wanted` is true.
 template <class Wanted>
 std::vector<std::size_t> nodes(std::size_t first, std::size_t last, Wanted wanted) {
   std::vector<std::size_t> chosen;
@@ -220,8 +220,8 @@ std::vector<std::size_t> nodes(std::size_t first, std::size_t last, Wanted wante
 }
 const auto kAll = [](std::size_t) { return true; };
 
-/// Pieces so short that no node gains by others of its own piece.
-TEST(MapEvidenceBetween, IsWhatAWholeMapGainsByThePairsOfBothPieces) {
+/// The submaps are so short that no node gains by others of its own submap.
+TEST(MapEvidenceBetween, IsWhatAWholeMapGainsByThePairsOfBothSubmaps) {
   Ring ring;
   const auto even_threes = [](std::size_t n) { return n / 3 % 2 == 0; };
   const auto odd_threes = [](std::size_t n) { return n / 3 % 2 == 1; };
@@ -243,7 +243,7 @@ TEST(MapEvidenceBetween, IsWhatAWholeMapGainsByThePairsOfBothPieces) {
   }
 }
 
-TEST(MapEvidenceBetween, DoesNotDependOnWhichPieceComesFirst) {
+TEST(MapEvidenceBetween, DoesNotDependOnWhichSubmapComesFirst) {
   Ring ring;
   const TwoPieces submaps(ring.truth, nodes(0, 12, kAll), nodes(46, 58, kAll));
   const double one = submaps.between(ring.score);
@@ -252,8 +252,8 @@ TEST(MapEvidenceBetween, DoesNotDependOnWhichPieceComesFirst) {
   EXPECT_NEAR(one, other, 1e-3 * one);
 }
 
-/// Of all pairs, each asked by itself. What a pair that tells for the map is worth is found from what is left of it
-/// when both nodes gain half of it, at most 1 each.
+/// Returns the evidence from all pairs one by one. The evidence of a pair for the map is recovered from its score, in
+/// which both nodes gain half of it, and at most 1 each.
 double by_each_pair(const TwoPieces& submaps, const test::Views& views, const Pose2& moved) {
   MapScore score(views, {}, 1);
   double sum = 0.0;
@@ -275,7 +275,7 @@ double by_each_pair(const TwoPieces& submaps, const test::Views& views, const Po
   return sum;
 }
 
-/// A walk so long that only a part of the pairs is asked.
+/// The walk is so long that only a sample of the pairs is compared.
 TEST(MapEvidenceBetween, OfManyPairsIsEstimatedWell) {
   const std::vector<Pose2> truth = test::ring_walk(160, 2);
   const test::Views views = test::views_along(test::ring_world(1), truth);
@@ -289,7 +289,7 @@ TEST(MapEvidenceBetween, OfManyPairsIsEstimatedWell) {
   }
 }
 
-TEST(MapEvidenceBetween, IsNoneOfPiecesThatDoNotMeet) {
+TEST(MapEvidenceBetween, IsNoneForSubmapsThatDoNotMeet) {
   Ring ring;
   const TwoPieces submaps(ring.truth, nodes(0, 12, kAll), nodes(46, 58, kAll));
   EXPECT_EQ(submaps.between(ring.score, {100.0, 0.0, 0.0}), 0.0);

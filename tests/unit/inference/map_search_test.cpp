@@ -22,16 +22,16 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr std::size_t kAgain = 8;  // steps that are walked a second time
+constexpr std::size_t kAgain = 8;  // The number of steps that are walked a second time.
 constexpr double kGood_m = 0.35;
 
-/// A ring that is walked once and a bit, with a chain that drifts to the left all the time.
+/// A walk of a little more than one lap, with odometry that drifts to the left all the time.
 struct Ring {
   explicit Ring(double drift_rad = 0.5 * kDegree) : edges(test::drifting_edges(truth, drift_rad)) {}
 
   LoopCluster again(double strength) const { return test::cluster_of(truth, {0, kRingLap, kAgain}, strength); }
 
-  /// Says that the far side of the ring is the near one.
+  /// Returns a wrong loop, which lays the far side of the ring on the near one.
   LoopCluster wrong(double strength) const {
     const Pose2 far_to_near = truth[3] * inverse(truth[28]);
     return test::cluster_of(truth, {3, 28, 5}, strength, far_to_near);
@@ -61,7 +61,7 @@ void expect_same_bits(const MapSolution& a, const MapSolution& b) {
   EXPECT_EQ(a.value, b.value);
 }
 
-TEST(SearchMap, WithoutLoopsLeavesTheChainAsItIs) {
+TEST(SearchMap, WithoutLoopsLeavesTheOdometryAsItIs) {
   const Ring ring;
   const MapSolution solution = ring.closed({});
   EXPECT_THAT(solution.accepted, IsEmpty());
@@ -94,7 +94,7 @@ TEST(SearchMap, RefusesALoopThatIsWrongHoweverStrong) {
   EXPECT_LT(test::worst_off_m(both.map_from_node, ring.truth), kGood_m);
 }
 
-/// The graph could bear it; the scans speak against it.
+/// The constraints of the graph allow the loop, but the scans contradict it.
 TEST(SearchMap, RefusesALoopThatPullsScansThatAgreeApart) {
   Ring ring(0.0);
   for (Edge& edge : ring.edges) edge.candidates[0].covariance = test::covariance_of(0.3, 10 * kDegree);
@@ -110,7 +110,7 @@ TEST(SearchMap, LeavesAloneWhatIsTooWeak) {
   EXPECT_THAT(ring.closed({ring.again(1.0)}).accepted, IsEmpty());
 }
 
-TEST(SearchMap, TakesTheOtherAlternativeOfALinkThatLoopsContradict) {
+TEST(SearchMap, TakesTheOtherCandidateOfAnEdgeThatLoopsContradict) {
   Ring ring(0.1 * kDegree);
   constexpr std::size_t kBad = 20;
   Edge& bad = ring.edges[kBad];
@@ -125,7 +125,7 @@ TEST(SearchMap, TakesTheOtherAlternativeOfALinkThatLoopsContradict) {
   EXPECT_LT(test::worst_off_m(solution.map_from_node, ring.truth), kGood_m);
 }
 
-TEST(SearchMap, CutsALinkThatIsWrongWithoutAnAlternative) {
+TEST(SearchMap, CutsAnEdgeThatIsWrongWithoutAnotherCandidate) {
   Ring ring(0.05 * kDegree);
   constexpr std::size_t kBad = 20;
   Edge& bad = ring.edges[kBad];
@@ -138,8 +138,8 @@ TEST(SearchMap, CutsALinkThatIsWrongWithoutAnAlternative) {
   EXPECT_LT(test::worst_off_m(solution.map_from_node, ring.truth), 2 * kGood_m);
 }
 
-/// Link after link turned, so that the node between them looks the other way: taking the right alternative of one of
-/// the two alone makes the map worse.
+/// Turns the first candidates of both edges of a node, so that it faces the other way. The right candidate of only one
+/// of the two edges makes the map worse.
 void turn_node(Ring& ring, std::size_t node) {
   const Pose2 turned{0.0, 0.0, kPi};
   for (const std::size_t i : {node - 1, node}) {
@@ -152,7 +152,7 @@ void turn_node(Ring& ring, std::size_t node) {
   }
 }
 
-TEST(SearchMap, TakesTwoAlternativesThatOnlyTogetherAreBetter) {
+TEST(SearchMap, TakesTwoCandidatesThatOnlyTogetherAreBetter) {
   Ring ring(0.1 * kDegree);
   turn_node(ring, 20);
   const MapSolution solution = ring.closed({ring.again(12.0)});
@@ -163,8 +163,8 @@ TEST(SearchMap, TakesTwoAlternativesThatOnlyTogetherAreBetter) {
   EXPECT_LT(test::worst_off_m(solution.map_from_node, ring.truth), kGood_m);
 }
 
-/// Several links are wrong; hypotheses that no cluster holds bridge those that have no other alternative.
-TEST(SearchMap, IsAtLeastAsGoodWithHypothesesAsWithout) {
+/// Several edges are wrong. Those without another candidate can be replaced by loop candidates that are in no cluster.
+TEST(SearchMap, IsAtLeastAsGoodWithLoopCandidatesAsWithout) {
   RunObserver nobody;
   double gained = 0.0;
   for (std::size_t bad = 8; bad <= 40; bad += 8) {
@@ -186,7 +186,7 @@ TEST(SearchMap, IsAtLeastAsGoodWithHypothesesAsWithout) {
   EXPECT_GT(gained, 10.0);
 }
 
-/// Two walks along the same corridor, or along two of them; nothing tells where the second starts.
+/// Two walks, in the same world or in two worlds. Nothing is known of where the second one starts.
 struct TwoWalks {
   explicit TwoWalks(bool same_world) {
     const std::vector<Pose2> second = test::ring_walk(12, 6, 2.0);
@@ -208,7 +208,7 @@ struct TwoWalks {
   std::vector<Edge> edges;
 };
 
-TEST(SearchMap, JoinsTwoPiecesOfOneWorld) {
+TEST(SearchMap, JoinsTwoSessionsOfOneWorld) {
   const TwoWalks walks(true);
   const MapSolution solution = walks.closed({test::cluster_of(walks.truth, {3, TwoWalks::kFirst, 8}, 24.0)});
   EXPECT_THAT(solution.accepted, ElementsAre(0));
@@ -231,13 +231,13 @@ TEST(SearchMap, KeepsTwoWorldsApart) {
   }
 }
 
-TEST(SearchMap, DoesNotJoinPiecesByAWeakLoop) {
+TEST(SearchMap, DoesNotJoinSessionsByAWeakLoop) {
   const TwoWalks walks(true);
   const LoopCluster weak = test::cluster_of(walks.truth, {3, TwoWalks::kFirst, 8}, 12.0);
   EXPECT_THAT(walks.closed({weak}).accepted, IsEmpty());
 }
 
-TEST(SearchMap, DoesNotJoinPiecesThatTwoLoopsWouldJoinDifferently) {
+TEST(SearchMap, DoesNotJoinSessionsThatTwoLoopsWouldJoinDifferently) {
   const TwoWalks walks(true);
   LoopCluster right = test::cluster_of(walks.truth, {3, TwoWalks::kFirst, 8}, 24.0);
   LoopCluster rival = right;

@@ -12,7 +12,7 @@ namespace {
 using ::testing::Each;
 using ::testing::ElementsAre;
 
-/// A chain of three, each of whose links is most likely wrong.
+/// A graph of three keyframes, each of whose edges is most likely wrong.
 struct ImprobableEdges {
   ImprobableEdges() {
     for (const auto& view : test::views_along(test::ring_world(1), test::ring_walk(3, 2, 4.0))) {
@@ -34,7 +34,7 @@ struct ImprobableEdges {
   RobustOptions options;
 };
 
-TEST(OptimizedMap, ImprobableLinksOfTheBareChainAreCut) {
+TEST(OptimizedMap, ImprobableEdgesOfOdometryAloneAreCut) {
   const ImprobableEdges walk;
   ASSERT_LT(stated_probability(walk.graph.edges[0]), walk.options.front_end.split_below);
   const OptimizedMap map = map_of_odometry(walk.graph, walk.options);

@@ -24,7 +24,7 @@ using ::testing::UnorderedElementsAre;
 
 using Nodes = std::vector<std::size_t>;
 
-/// The nodes of each of `num_submaps`, each node in any of them.
+/// Puts each node into a random submap, and returns the nodes of each of `num_submaps`.
 std::vector<Nodes> strewn(std::mt19937& rng, std::size_t num_nodes, std::size_t num_submaps) {
   std::uniform_int_distribution<std::size_t> any(0, num_submaps - 1);
   std::vector<Nodes> submaps(num_submaps);
@@ -34,7 +34,7 @@ std::vector<Nodes> strewn(std::mt19937& rng, std::size_t num_nodes, std::size_t 
 
 using Steps = std::set<std::tuple<std::size_t, std::size_t, std::size_t>>;
 
-/// Pairs of nodes of the two pieces with no node of either between them.
+/// Returns the pairs of nodes of two submaps with no node of either between them.
 Steps by_all_pairs(const Nodes& of_f, const Nodes& of_g) {
   Steps steps;
   for (const std::size_t f : of_f) {
@@ -49,7 +49,7 @@ Steps by_all_pairs(const Nodes& of_f, const Nodes& of_g) {
   return steps;
 }
 
-TEST(Crossings, ArePairsWithNoNodeOfEitherPieceBetweenThem) {
+TEST(Crossings, ArePairsWithNoNodeOfEitherSubmapBetweenThem) {
   std::mt19937 rng(1);
   for (std::size_t round = 0; round < 200; ++round) {
     const std::vector<Nodes> submaps = strewn(rng, 2 + round % 37, 2 + round % 4);
@@ -64,15 +64,15 @@ TEST(Crossings, ArePairsWithNoNodeOfEitherPieceBetweenThem) {
   }
 }
 
-TEST(Crossings, OfAPieceWithoutNodesAreNone) {
+TEST(Crossings, OfASubmapWithoutNodesAreNone) {
   EXPECT_THAT(crossings({}, {1, 2}), IsEmpty());
   EXPECT_THAT(crossings({1, 2}, {}), IsEmpty());
 }
 
-constexpr std::size_t kF = 3;  // as two pieces may be called
+constexpr std::size_t kF = 3;  // These are the numbers of two submaps.
 constexpr std::size_t kG = 5;
 
-/// Two pieces of 12 nodes each that take turns along the chain, and joints of them.
+/// Two submaps of 12 nodes each that take turns along the walk, and inter-submap candidates.
 struct TwoPieces {
   explicit TwoPieces(unsigned seed) : rng(seed), f_from_g(test::random_pose(rng, 10.0, kPi)) {
     const std::vector<Pose2> walk = test::random_walk(rng, 24);
@@ -88,7 +88,7 @@ struct TwoPieces {
     return nodes[std::uniform_int_distribution<std::size_t>(0, nodes.size() - 1)(rng)];
   }
 
-  /// Of two nodes drawn at random, the one of `f` first or last; as if the pieces lay so to each other.
+  /// Adds a candidate of two random nodes, in either order, that gives the submaps this relative pose.
   std::size_t add(const Pose2& said_f_from_g, double worth, double error = 0.0, double noise = 0.0) {
     const std::size_t i = any_of(of_f);
     const std::size_t j = any_of(of_g);
@@ -102,7 +102,7 @@ struct TwoPieces {
 
   double any_worth() { return std::uniform_real_distribution<double>(0.0, 6.0)(rng); }
 
-  /// Node of `f`, node of `g`, and how the one lies to the other.
+  /// Returns a candidate with the node of `f` first.
   EdgeCandidate from_f(std::size_t joint) const {
     const EdgeCandidate& c = joints[joint];
     if (submap[c.a] == kF) return c;
@@ -126,10 +126,10 @@ struct TwoPieces {
   std::vector<Pose2> pose;
   Nodes submap;
   std::vector<EdgeCandidate> joints;
-  std::vector<double> noises;  ///< of each
+  std::vector<double> noises;  ///< of each candidate
 };
 
-TEST(Ways, ThatAllJointsSayAreOneWayThere) {
+TEST(SubmapAlignments, ThatAllCandidatesAgreeOnAreOneAndRight) {
   for (unsigned seed = 1; seed <= 30; ++seed) {
     TwoPieces submaps(seed);
     for (int k = 0; k < 12; ++k) submaps.add(submaps.f_from_g, 1.0 + submaps.any_worth(), 0.02);
@@ -143,7 +143,7 @@ TEST(Ways, ThatAllJointsSayAreOneWayThere) {
   }
 }
 
-TEST(Ways, OfJointsWithoutErrorAreExact) {
+TEST(SubmapAlignments, OfCandidatesWithoutErrorAreExact) {
   TwoPieces submaps(1);
   for (int k = 0; k < 5; ++k) submaps.add(submaps.f_from_g, submaps.any_worth());
   ASSERT_EQ(submaps.ways().size(), 1U);
@@ -155,7 +155,7 @@ TEST(Ways, OfJointsWithoutErrorAreExact) {
   EXPECT_THAT(TwoPieces(3).ways(), IsEmpty());
 }
 
-TEST(Ways, ThatContradictEachOtherAreKeptApartAndTheSurestComesFirst) {
+TEST(SubmapAlignments, ThatContradictEachOtherAreKeptApartAndTheSurestComesFirst) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     TwoPieces submaps(seed);
     const Pose2 turned = submaps.f_from_g * Pose2{0.0, 0.0, kPi};
@@ -177,7 +177,8 @@ TEST(Ways, ThatContradictEachOtherAreKeptApartAndTheSurestComesFirst) {
 
 std::size_t apart(std::size_t i, std::size_t j) { return std::max(i, j) - std::min(i, j); }
 
-/// By where the node of `g` comes to lie in `f`: the seed's pose may drift, on the way along both pieces.
+/// Returns whether two candidates put the node of `g` at the same pose in `f`. The tolerance grows with the distance
+/// along both submaps, since these may drift.
 bool says_the_same(const TwoPieces& submaps, std::size_t seed, std::size_t joint) {
   const EdgeCandidate s = submaps.from_f(seed);
   const EdgeCandidate c = submaps.from_f(joint);
@@ -188,7 +189,7 @@ bool says_the_same(const TwoPieces& submaps, std::size_t seed, std::size_t joint
          angle_between(by_seed.theta_rad, by_joint.theta_rad) < (6 + 0.15 * nodes) * kDegree;
 }
 
-/// The sum of the best of each node, over the side that says less.
+/// Returns the sum of the best score of each node, for the submap that has less.
 double strength_of(const TwoPieces& submaps, const Nodes& joints, double trust_cap) {
   double sums[2] = {0.0, 0.0};
   for (const bool of_f : {true, false}) {
@@ -204,7 +205,8 @@ double strength_of(const TwoPieces& submaps, const Nodes& joints, double trust_c
   return std::min({sums[0], sums[1], trust_cap});
 }
 
-/// Of four relative poses, some of them near each other, with errors that often are too large.
+/// Returns submaps with candidates of four relative poses, some of them near each other, with errors that often are too
+/// large.
 TwoPieces doubtful_submaps(unsigned seed) {
   TwoPieces submaps(seed);
   const std::vector<Pose2> said{submaps.f_from_g, Pose2{0.35, 0.0, 0.0} * submaps.f_from_g,
@@ -218,7 +220,7 @@ TwoPieces doubtful_submaps(unsigned seed) {
   return submaps;
 }
 
-TEST(Ways, HoldAllThatAgreesWithTheSurestThatIsLeft) {
+TEST(SubmapAlignments, HaveAllCandidatesThatAgreeWithTheSurestLeft) {
   std::size_t num_ways = 0;
   std::size_t num_shared = 0;
   for (unsigned seed = 1; seed <= 25; ++seed) {
@@ -247,7 +249,7 @@ TEST(Ways, HoldAllThatAgreesWithTheSurestThatIsLeft) {
   EXPECT_GT(num_shared, 100U) << "some are part of several";
 }
 
-/// Squared errors of places, and of directions as if of points 2 m away.
+/// Returns the sum of the squared errors of translation, and of rotation as the error of a point 2 m away.
 double cost_of(const TwoPieces& submaps, const Nodes& joints, const Pose2& f_from_g) {
   double cost = 0.0;
   for (const std::size_t joint : joints) {
@@ -264,7 +266,7 @@ double cost_of(const TwoPieces& submaps, const Nodes& joints, const Pose2& f_fro
   return cost;
 }
 
-TEST(Ways, LieWhereTheirJointsHaveTheLeastErrors) {
+TEST(SubmapAlignments, AreWhereTheirCandidatesHaveTheLeastErrors) {
   std::mt19937 rng(9);
   for (unsigned seed = 1; seed <= 25; ++seed) {
     const TwoPieces submaps = doubtful_submaps(seed);
@@ -279,7 +281,7 @@ TEST(Ways, LieWhereTheirJointsHaveTheLeastErrors) {
   }
 }
 
-TEST(Holds, WhatIsNearEnoughToThePiece) {
+TEST(SubmapAlignments, HoldACandidateThatAgreesWithItsSubmap) {
   TwoPieces submaps(4);
   const std::size_t a = submaps.of_f[2];
   const std::size_t b = submaps.of_f[7];

@@ -20,12 +20,12 @@ using test::kRingLap;
 
 const Pose2 kTurned{0.0, 0.0, kPi};
 
-/// A walk round the ring and a bit more, the links of which a test makes doubtful.
+/// A walk of a little more than one lap, whose edges a test can make doubtful.
 struct Walk {
   explicit Walk(double drift_rad = 0.1 * kDegree, unsigned seed = 2)
       : truth(test::ring_walk(kRingLap + 8, seed)), edges(test::drifting_edges(truth, drift_rad)), right(edges) {}
 
-  /// A wrong alternative comes first; the right one is as good as never, or comes second.
+  /// Puts a wrong candidate first. The right one comes second, or is removed.
   void spoil(std::size_t edge, const Pose2& wrong, bool keep_right = true) {
     std::vector<EdgeCandidate>& candidates = edges[edge].candidates;
     EdgeCandidate first = candidates.front();
@@ -36,7 +36,7 @@ struct Walk {
     edges[edge].probability = 0.5;
   }
 
-  /// As if the robot had turned round for one scan.
+  /// Turns a node as if the robot had turned round for one scan.
   void turn_node(std::size_t node) {
     spoil(node - 1, edges[node - 1].candidates[0].a_from_b * kTurned);
     spoil(node, inverse(kTurned) * edges[node].candidates[0].a_from_b);
@@ -53,7 +53,7 @@ struct Walk {
     return assembled(candidates, nobody, variant, threads);
   }
 
-  /// By first alternatives; what belongs to another log is far away.
+  /// Returns the poses by first candidates; other sessions are far away.
   std::vector<Pose2> chain() const {
     std::vector<Pose2> poses{{}};
     for (const Edge& edge : edges) {
@@ -70,7 +70,7 @@ struct Walk {
   std::vector<Edge> right;
 };
 
-/// As one lies to the other, whatever the frame.
+/// Compares relative poses, since the frame of a map does not matter.
 void expect_same_map(const std::vector<Pose2>& one, const std::vector<Pose2>& other, double off = 1e-6) {
   ASSERT_EQ(one.size(), other.size());
   for (std::size_t n = 0; n < one.size(); ++n) {
@@ -78,12 +78,12 @@ void expect_same_map(const std::vector<Pose2>& one, const std::vector<Pose2>& ot
   }
 }
 
-TEST(AssembledMap, OfSureLinksIsTheChain) {
+TEST(MergedSubmaps, OfSureEdgesAreTheOdometry) {
   const Walk walk;
   expect_same_map(walk.assembled(), walk.chain(), 0.0);
 }
 
-TEST(AssembledMap, TurnsANodeThatBothItsLinksHaveWrong) {
+TEST(MergedSubmaps, TurnANodeThatBothItsEdgesHaveWrong) {
   Walk walk;
   walk.turn_node(20);
   Walk only_before = walk;
@@ -95,7 +95,7 @@ TEST(AssembledMap, TurnsANodeThatBothItsLinksHaveWrong) {
   expect_same_map(walk.assembled(), test::dead_reckoning(walk.right));
 }
 
-/// All ways to choose among the alternatives of `doubtful`; the map that is worth most.
+/// Tries all combinations of candidates of the edges `doubtful`, and returns the map with the largest value.
 std::vector<Pose2> best_of_all_choices(const Walk& walk, const std::vector<std::size_t>& doubtful) {
   std::vector<Pose2> best;
   double most = -std::numeric_limits<double>::infinity();
@@ -112,7 +112,7 @@ std::vector<Pose2> best_of_all_choices(const Walk& walk, const std::vector<std::
   return best;
 }
 
-TEST(AssembledMap, IsTheBestOfAllChoices) {
+TEST(MergedSubmaps, AreTheBestOfAllCombinations) {
   std::mt19937 rng(3);
   for (unsigned seed = 1; seed <= 4; ++seed) {
     Walk walk(0.05 * kDegree, seed);
@@ -128,7 +128,7 @@ TEST(AssembledMap, IsTheBestOfAllChoices) {
   }
 }
 
-TEST(AssembledMap, BridgesALinkThatHasNoRightAlternative) {
+TEST(MergedSubmaps, ReplaceAnEdgeThatHasNoRightCandidate) {
   Walk walk;
   walk.spoil(20, walk.edges[20].candidates[0].a_from_b * Pose2{0.3, -0.5, 70 * kDegree}, false);
   const std::vector<EdgeCandidate> bridge = test::cluster_of(walk.truth, {18, 21, 3}, 0.0).members;
@@ -140,9 +140,9 @@ TEST(AssembledMap, BridgesALinkThatHasNoRightAlternative) {
   EXPECT_LT(test::worst_off_m(walk.assembled(wrong), test::dead_reckoning(walk.right)), 1.0) << "the scans tell";
 }
 
-/// The walk comes back to where it began. What the chain has drifted until then is spread over all of it, and is not
-/// left to the one link that is doubtful.
-TEST(AssembledMap, IsBentToWhatItsHypothesesSay) {
+/// The walk comes back to its start. The drift of odometry until then must be spread over all edges, and not only
+/// corrected at the one doubtful edge.
+TEST(MergedSubmaps, AreBentToTheirLoopCandidates) {
   for (const double drift_deg : {0.1, 0.15}) {
     Walk walk(drift_deg * kDegree);
     walk.edges[30].probability = 0.6;
@@ -155,7 +155,7 @@ TEST(AssembledMap, IsBentToWhatItsHypothesesSay) {
   }
 }
 
-TEST(AssembledMap, NeverLaysPiecesOfDifferentLogsTogether) {
+TEST(MergedSubmaps, NeverJoinDifferentSessions) {
   Walk walk;
   constexpr std::size_t kLast = 24;
   walk.edges[kLast] = {};
@@ -172,7 +172,7 @@ TEST(AssembledMap, NeverLaysPiecesOfDifferentLogsTogether) {
   expect_same_map({map.begin() + first, map.end()}, {right.begin() + first, right.end()});
 }
 
-TEST(AssembledMap, OfAVariantIsTheSameToTheBitForAnyNumberOfThreads) {
+TEST(MergedSubmaps, OfAVariantAreTheSameToTheBitForAnyNumberOfThreads) {
   Walk walk;
   walk.turn_node(20);
   walk.turn_node(40);
@@ -187,8 +187,8 @@ TEST(AssembledMap, OfAVariantIsTheSameToTheBitForAnyNumberOfThreads) {
   }
 }
 
-/// Scans that tell nothing: the first variant goes by the alignments, others by chance.
-TEST(AssembledMap, DiffersBetweenVariantsWhereItIsDoubtful) {
+/// These scans see nothing, so the first variant follows the matches, and the others are random.
+TEST(MergedSubmaps, DifferBetweenVariantsAtDoubtfulEdges) {
   Walk walk;
   for (auto& view : walk.views) view = std::make_shared<ScanView>(test::view_of(test::blind_scan()));
   walk.turn_node(20);
@@ -203,8 +203,8 @@ TEST(AssembledMap, DiffersBetweenVariantsWhereItIsDoubtful) {
   EXPECT_LT(as_the_chain, kVariants - 4);
 }
 
-/// At a corner of the ring the first decision is wrong; it is not in all variants, and the evidence tells which.
-TEST(AssembledMap, IsRightInSomeVariantWhereTheFirstIsNot) {
+/// At a corner of the ring the first variant decides wrongly. Others do not, and the scans show which are right.
+TEST(MergedSubmaps, AreRightInSomeVariantWhereTheFirstIsWrong) {
   Walk walk;
   for (const std::size_t node : {10U, 25U, 40U}) walk.turn_node(node);
   std::vector<Pose2> best = walk.assembled();
@@ -219,7 +219,7 @@ TEST(AssembledMap, IsRightInSomeVariantWhereTheFirstIsNot) {
   expect_same_map(best, test::dead_reckoning(walk.right));
 }
 
-TEST(AssembledMap, StoppedAtAnyTimeHasTheRestFromTheChain) {
+TEST(MergedSubmaps, StoppedAtAnyTimeHaveTheRestFromOdometry) {
   Walk walk;
   for (const std::size_t node : {10U, 20U, 40U}) walk.turn_node(node);
   test::Patience patient(1000);
@@ -244,7 +244,7 @@ TEST(AssembledMap, StoppedAtAnyTimeHasTheRestFromTheChain) {
   }
 }
 
-TEST(AssembledMap, OfOneNodeOrNoneIsThat) {
+TEST(MergedSubmaps, OfOneNodeOrNoneAreThat) {
   RunObserver nobody;
   MapScore score(test::views_along(test::ring_world(1), test::ring_walk(1, 1)), {}, 1);
   EXPECT_TRUE(merged_submaps({{}, {}, {}}, score, {}, 0, nobody).empty());

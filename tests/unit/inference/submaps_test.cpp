@@ -17,14 +17,14 @@ Pose2 any_pose(std::mt19937& random) {
   return {uniform(random), uniform(random), uniform(random)};
 }
 
-/// Nodes 2 and 3 are away from the rest.
+/// Returns submaps of which one has nodes 2 and 3, and another all the rest.
 Submaps away_and_back(std::mt19937& random) {
   std::vector<Pose2> poses;
   for (int n = 0; n < 6; ++n) poses.push_back(any_pose(random));
   return {poses, {0, 0, 2, 2, 0, 0}};
 }
 
-TEST(Submaps, JoinsTheLaterPieceWhole) {
+TEST(Submaps, JoinsTheWholeLaterSubmap) {
   std::mt19937 random(1);
   Submaps submaps = away_and_back(random);
   const std::vector<Pose2> before = submaps.map_from_node();
@@ -37,7 +37,7 @@ TEST(Submaps, JoinsTheLaterPieceWhole) {
   EXPECT_THAT(submaps.map_from_node()[5], test::IsNearPose(before[5], 1e-9, 1e-9));
 }
 
-TEST(Submaps, TellsWhichLinksJoinTheSameTwo) {
+TEST(Submaps, TellsWhichEdgesJoinTheSameTwo) {
   std::mt19937 random(2);
   Submaps submaps = away_and_back(random);
   EXPECT_TRUE(submaps.are_parallel(1, 3));
@@ -50,8 +50,8 @@ TEST(Submaps, TellsWhichLinksJoinTheSameTwo) {
   EXPECT_TRUE(submaps.is_joined(3));
 }
 
-/// In either direction: by the way there, or by the way back, the pieces come to lie alike.
-TEST(Submaps, CarriesWhatOneLinkSaysToTheOther) {
+/// Both parallel edges must give the submaps the same relative pose, in either direction.
+TEST(Submaps, CarriesThePoseOfOneEdgeToTheOther) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
     const Submaps apart = away_and_back(random);

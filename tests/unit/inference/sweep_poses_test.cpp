@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Positions of several sub-scans, from the log to the result.
+// These tests map scans of several sweeps, from the log to the result.
 #include <gmock/gmock.h>
 
 #include "shapemap/mapper/map_log.hpp"
@@ -37,7 +37,7 @@ TEST(SweepPoses, AreInTheResultAndBetterThanNominal) {
   EXPECT_LT(rms_rad[1], 0.4 * rms_rad[0]);
 }
 
-TEST(SweepPoses, AreNoMatterWhereEachPositionHasOneScan) {
+TEST(SweepPoses, DoNotMatterWhereEachScanHasOneSweep) {
   Log log;
   std::mt19937 rng(4);
   for (const Pose2& pose : test::ring_walk(6, 2)) {

@@ -11,7 +11,7 @@ namespace {
 
 using test::HasSameBits;
 
-/// Stops along a side of the ring and round its corner, whose sub-scans are turned by up to 2 degrees.
+/// Scans along a side of the ring and round its corner, whose sweeps are turned by up to 2 degrees.
 struct Survey {
   Survey() {
     for (const Scan& scan : stops.log.scans) {
@@ -44,7 +44,7 @@ TEST(RefineSweeps, FindsHowEachIsTurned) {
   EXPECT_LT(test::heading_rms_rad(survey.stops, found.map_from_node, found.node_from_sweep), 0.35 * before_rad);
 }
 
-TEST(RefineSweeps, PutsAPositionWhereItsSubScansSayInTheMean) {
+TEST(RefineSweeps, PutsAScanAtTheMeanOfItsSweeps) {
   const Survey survey;
   const SweepPoses found = survey.refined();
   EXPECT_THAT(found.map_from_node[0], HasSameBits(survey.start[0])) << "the first stays";
@@ -55,7 +55,7 @@ TEST(RefineSweeps, PutsAPositionWhereItsSubScansSayInTheMean) {
   }
 }
 
-/// Poses that are off by centimetres and a degree end where those end that were right.
+/// A start that is off by centimetres and a degree must give the same poses as the right one.
 TEST(RefineSweeps, DoesNotDependOnWhereItStarts) {
   Survey survey;
   const SweepPoses wanted = survey.refined();
@@ -80,7 +80,7 @@ TEST(RefineSweeps, WithoutARoundLeavesAllAsItIs) {
   }
 }
 
-TEST(RefineSweeps, DoesNotAlignPiecesThatNothingJoins) {
+TEST(RefineSweeps, DoesNotMatchComponentsThatNothingJoins) {
   Survey survey;
   survey.parts = {0, 0, 0, 0, 4, 4, 4, 4};
   const Pose2 aside{0.10, -0.05, 1 * kDegree};

@@ -18,12 +18,12 @@ LoopCluster cluster_of(const std::vector<std::pair<std::size_t, std::size_t>>& n
   return cluster;
 }
 
-TEST(LoopRivals, AreThoseThatShareNodesByWhatTheySayOfThese) {
+TEST(ConflictingLoops, ShareNodesAndHaveTheStrengthAtThese) {
   const std::vector<LoopCluster> clusters{
-      cluster_of({{1, 50}, {2, 51}, {3, 52}}, 2.0),     // worth 4 each
-      cluster_of({{20, 51}, {21, 52}, {22, 53}}, 1.0),  // shares 51 and 52
-      cluster_of({{52, 80}, {53, 81}}, 0.0),            // shares 52, as the earlier ones of its own
-      cluster_of({{30, 60}, {31, 61}}, 5.0)};           // shares nothing
+      cluster_of({{1, 50}, {2, 51}, {3, 52}}, 2.0),     // Each member is worth 4.
+      cluster_of({{20, 51}, {21, 52}, {22, 53}}, 1.0),  // It shares nodes 51 and 52.
+      cluster_of({{52, 80}, {53, 81}}, 0.0),            // It shares node 52, which is in its earlier stretch.
+      cluster_of({{30, 60}, {31, 61}}, 5.0)};           // It shares no node.
   const std::vector<std::vector<ConflictingLoop>> rivals = conflicting_loops(clusters);
   ASSERT_EQ(rivals.size(), 4U);
   ASSERT_EQ(rivals[0].size(), 2U);
@@ -36,7 +36,7 @@ TEST(LoopRivals, AreThoseThatShareNodesByWhatTheySayOfThese) {
   EXPECT_TRUE(rivals[3].empty());
 }
 
-TEST(LoopRivals, AreNoStrongerThanTheirCluster) {
+TEST(ConflictingLoops, AreNoStrongerThanTheirCluster) {
   std::vector<LoopCluster> clusters{cluster_of({{1, 50}, {2, 51}}, 2.0), cluster_of({{20, 50}, {21, 51}}, 4.0)};
   clusters[1].strength = 5.0;
   EXPECT_DOUBLE_EQ(conflicting_loops(clusters)[0][0].strength, 5.0);
@@ -45,7 +45,7 @@ TEST(LoopRivals, AreNoStrongerThanTheirCluster) {
   EXPECT_TRUE(conflicting_loops({}).empty());
 }
 
-/// Slowly: for each two clusters, each node of each stretch by itself.
+/// Returns the strength of a conflicting loop, slowly: it asks for each node of each stretch by itself.
 double by_each_node(const LoopCluster& one, const LoopCluster& other) {
   double strongest = 0.0;
   for (const bool later : {false, true}) {
@@ -66,7 +66,7 @@ double by_each_node(const LoopCluster& one, const LoopCluster& other) {
   return std::min(strongest, other.strength);
 }
 
-TEST(LoopRivals, AreThoseThatASlowSearchFinds) {
+TEST(ConflictingLoops, AreThoseThatASlowSearchFinds) {
   std::mt19937 rng(7);
   std::uniform_int_distribution<std::size_t> node(0, 30);
   std::uniform_real_distribution<double> odds(-4.0, 5.0);

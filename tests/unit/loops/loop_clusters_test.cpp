@@ -15,7 +15,7 @@
 namespace shapemap {
 namespace {
 
-using Key = std::tuple<std::size_t, std::size_t, double>;  // no two hypotheses of a test have the same log odds
+using Key = std::tuple<std::size_t, std::size_t, double>;  // No two candidates of a test have the same log odds.
 
 Key key_of(const EdgeCandidate& candidate) { return {candidate.a, candidate.b, candidate.score}; }
 
@@ -31,14 +31,14 @@ std::set<std::set<Key>> keys_of(const std::vector<LoopCluster>& clusters) {
   return keys;
 }
 
-/// A chain of 60 nodes; what was seen on the way out, nodes 5 to 14, is seen again from 40 on.
+/// A walk of 60 nodes that comes to the places of nodes 5 to 14 again from node 40 on.
 struct Way {
   explicit Way(unsigned seed) : rng(seed) {
     poses = test::random_walk(rng, 60);
     submaps.assign(poses.size(), 0);
   }
 
-  /// As if the map were bent between the two stretches by `bend`, with an error of its own for each.
+  /// Returns a candidate with a random error of its own, for a map that is bent by `bend` between the two stretches.
   EdgeCandidate candidate(std::size_t a, std::size_t b, const Pose2& bend, double error) {
     std::uniform_real_distribution<double> log_odds(-3.0, 6.0);
     const Pose2 a_from_b = inverse(poses[a]) * bend * poses[b] * test::random_pose(rng, error, error);
@@ -63,7 +63,7 @@ TEST(LoopClusters, HoldWhatIsConsistentAndLeaveOutWhatIsNot) {
     std::vector<EdgeCandidate> candidates = way.planted(bend);
     std::set<Key> expected;
     for (const EdgeCandidate& candidate : candidates) expected.insert(key_of(candidate));
-    for (std::size_t k = 0; k < 10; ++k) {  // none agrees with any other
+    for (std::size_t k = 0; k < 10; ++k) {  // None of these agrees with any other.
       const Pose2 wrong = bend * Pose2{2.0 + 3.0 * static_cast<double>(k), 0.0, 0.0};
       candidates.push_back(way.candidate(5 + k, 40 + k, wrong, 0.0));
     }
@@ -77,7 +77,7 @@ TEST(LoopClusters, HoldWhatIsConsistentAndLeaveOutWhatIsNot) {
   }
 }
 
-TEST(LoopClusters, DoNotReachFromOnePieceToTheNext) {
+TEST(LoopClusters, DoNotReachFromOneSubmapToTheNext) {
   Way way(1);
   const std::vector<EdgeCandidate> candidates = way.planted({1.0, 0.0, 0.5});
   ASSERT_EQ(loop_clusters(candidates, way.poses, way.submaps, {}).size(), 1U);
@@ -108,7 +108,7 @@ TEST(LoopClusters, NeedSeveralNodesOnEitherSide) {
   EXPECT_TRUE(loop_clusters({}, way.poses, way.submaps, {}).empty());
 }
 
-/// Enough of them near enough to each other that all cases come up.
+/// Returns candidates that are so near to each other that all cases occur.
 std::vector<EdgeCandidate> random_candidates(Way& way, std::size_t count) {
   const std::vector<Pose2> bends{{}, {0.3, 0.0, 0.0}, {0.0, 0.0, 0.08}, {5.0, 1.0, 1.0}};
   std::uniform_int_distribution<std::size_t> first(0, 20);
@@ -123,8 +123,8 @@ std::vector<EdgeCandidate> random_candidates(Way& way, std::size_t count) {
   return candidates;
 }
 
-/// Whether two hypotheses support each other: of neighbouring nodes, and by way of the first of the later ones they say
-/// the same.
+/// Returns whether two candidates support each other: their nodes are near each other, and their relative poses agree
+/// by way of the map.
 bool support(const Way& way, const EdgeCandidate& x, const EdgeCandidate& y, const ClusterOptions& options) {
   const EdgeCandidate& one = x.b <= y.b ? x : y;
   const EdgeCandidate& other = x.b <= y.b ? y : x;
@@ -140,7 +140,7 @@ bool support(const Way& way, const EdgeCandidate& x, const EdgeCandidate& y, con
   return std::hypot(off.x_m, off.y_m) < options.same.m && std::abs(off.theta_rad) < options.same.rad;
 }
 
-/// Groups of all that support each other, by flood fill.
+/// Returns the groups of candidates that support each other, by flood fill.
 std::set<std::set<Key>> by_flood_fill(const Way& way, const std::vector<EdgeCandidate>& candidates,
                                       const ClusterOptions& options) {
   std::set<std::set<Key>> groups;

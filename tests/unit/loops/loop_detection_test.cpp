@@ -27,7 +27,7 @@ std::set<Pair> pairs_of(const std::vector<EdgeCandidate>& candidates) {
   return pairs;
 }
 
-/// A coarse search: what is asked for here is not how well it aligns.
+/// Returns a coarse search, which is enough here since these tests are not about the accuracy of matches.
 MatchSearchOptions quick() {
   MatchSearchOptions search;
   search.candidates.rotation_peaks = 4;
@@ -37,7 +37,7 @@ MatchSearchOptions quick() {
   return search;
 }
 
-/// Says no after `times` times yes, and notes how far it went.
+/// An observer that asks to stop after `times` questions, and notes the progress.
 struct Patience : RunObserver {
   explicit Patience(std::size_t times) : left(times) {}
   bool keep_going() override { return left-- > 0; }
@@ -62,7 +62,7 @@ const Ring& ring() {
   return the_ring;
 }
 
-/// Without a store.
+/// Returns a search without a cache.
 LoopSearch by(const MatchSearchOptions& matching, const LoopDetectionOptions& detection, RunObserver& observer,
               int threads = 1) {
   return {matching, detection, {threads, observer}, nullptr};
@@ -102,7 +102,7 @@ TEST(LikelyLoops, OfAWalkThatIsTooShortAreNone) {
   EXPECT_TRUE(likely_loops({}, 0, by(matching, detection, nobody)).empty());
 }
 
-TEST(LikelyLoops, StopsWhenItIsAskedTo) {
+TEST(LikelyLoops, StopWhenTheObserverAsksTo) {
   const MatchSearchOptions matching = quick();
   LoopDetectionOptions options;
   options.likely_places = 4;
@@ -117,8 +117,8 @@ TEST(LikelyLoops, StopsWhenItIsAskedTo) {
   EXPECT_LT(some.size(), likely_loops(ring().views, 0, by(matching, options, nobody)).size());
 }
 
-/// What is found of the first nodes and of the others, one after the other, is what is found of all.
-TEST(LikelyLoops, CanBeLookedForInParts) {
+/// A search of the first nodes and then of the others finds the same candidates as one of all nodes.
+TEST(LikelyLoops, CanBeSearchedInParts) {
   const MatchSearchOptions matching = quick();
   LoopDetectionOptions options;
   options.likely_places = 2;
@@ -155,7 +155,7 @@ TEST(LikelyLoops, AreTheSameToTheBitForAnyNumberOfThreads) {
   }
 }
 
-TEST(Bridges, AlignTheNodesBeforeALinkToThoseAfterIt) {
+TEST(CrossEdgeMatches, JoinTheNodesBeforeAnEdgeToThoseAfterIt) {
   const MatchSearchOptions matching = quick();
   const LoopDetectionOptions detection;
   RunObserver nobody;
@@ -172,7 +172,7 @@ TEST(Bridges, AlignTheNodesBeforeALinkToThoseAfterIt) {
   EXPECT_TRUE(cross_edge_matches(few, {}, by(matching, detection, nobody)).empty());
 }
 
-TEST(Bridges, FindTheStepAcross) {
+TEST(CrossEdgeMatches, FindTheStepAcross) {
   const MatchSearchOptions matching;
   const LoopDetectionOptions detection;
   RunObserver nobody;
@@ -185,7 +185,7 @@ TEST(Bridges, FindTheStepAcross) {
   EXPECT_GE(right, 12) << "of 16 pairs";
 }
 
-TEST(Bridges, StopWhenTheyAreAskedTo) {
+TEST(CrossEdgeMatches, StopWhenTheObserverAsksTo) {
   const MatchSearchOptions matching = quick();
   const LoopDetectionOptions detection;
   Patience none(0);

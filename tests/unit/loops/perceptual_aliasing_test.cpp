@@ -10,7 +10,7 @@
 namespace shapemap {
 namespace {
 
-/// Along a line, a metre apart, with links that are all sure.
+/// A walk along a line with steps of a metre, whose edges are all sure.
 struct Walk {
   Walk() {
     for (std::size_t n = 0; n < 60; ++n) map.push_back({static_cast<double>(n), 0.0, 0.0});
@@ -21,7 +21,7 @@ struct Walk {
   EdgeCandidate loop(std::size_t a, std::size_t b, const Pose2& a_from_b, double log_odds) const {
     return {a, b, a_from_b, test::covariance_of(0.05, 1 * kDegree), log_odds};
   }
-  /// As the chain has it.
+  /// Returns a candidate with the relative pose of the map.
   EdgeCandidate right(std::size_t a, std::size_t b, double log_odds) const {
     return loop(a, b, inverse(map[a]) * map[b], log_odds);
   }
@@ -41,7 +41,7 @@ TEST(PerceptualAliasing, WhereNothingIsContradictedAllIsKept) {
   EXPECT_EQ(kept[1].score, 1.0) << "the chain is not sure of what is so far apart";
 }
 
-TEST(PerceptualAliasing, WhatTheChainContradictsIsLeftOutAndCountsAgainstTheOthersThere) {
+TEST(PerceptualAliasing, WhatOdometryContradictsIsLeftOutAndCountsAgainstTheOthersThere) {
   const Walk walk;
   const std::vector<EdgeCandidate> kept = walk.of({walk.loop(10, 22, {0.1, 0.0, 0.0}, 3.0), walk.loop(3, 52, {}, 6.0),
                                                    walk.loop(8, 58, {}, 6.0), walk.loop(4, 24, {20.0, 0.0, 0.0}, 2.0)});
@@ -64,7 +64,7 @@ TEST(PerceptualAliasing, HowSureAnEdgeMustBeToContradictIsForTheCallerToSay) {
   EXPECT_EQ(walk.of(wrong, 0.995).size(), 1U);
 }
 
-TEST(PerceptualAliasing, ADoubtfulLinkOrOneThatSlidesContradictsNothing) {
+TEST(PerceptualAliasing, ADoubtfulEdgeOrOneThatSlidesContradictsNothing) {
   const EdgeCandidate off = Walk().loop(10, 22, {}, 3.0);
   Walk doubtful;
   doubtful.edges[15].probability = 0.9;
@@ -77,7 +77,7 @@ TEST(PerceptualAliasing, ADoubtfulLinkOrOneThatSlidesContradictsNothing) {
   EXPECT_EQ(gap.of({off}).size(), 1U);
 }
 
-TEST(PerceptualAliasing, NeedsAMapOfTheChain) {
+TEST(PerceptualAliasing, NeedsAMapOfOdometry) {
   Walk walk;
   walk.map.pop_back();
   EXPECT_THROW(walk.of({}), std::invalid_argument);

@@ -26,7 +26,7 @@ ShapePoint point(double x_m, double y_m, double tangent_deg) {
   return result;
 }
 
-/// The same surfaces, seen in another frame.
+/// Returns the same surfaces in another frame.
 ScanView moved(const ScanView& view, const Pose2& other_from_robot) {
   std::vector<ShapePoint> points = view.points;
   for (ShapePoint& p : points) {
@@ -76,7 +76,7 @@ TEST(PlaceDescriptor, OfRealScansIsTheSameInAnyFrame) {
     const ScanView view = test::view_from(test::strange_place(seed), {});
     const PlaceDescriptor descriptor = place_descriptor(view);
     for (int round = 0; round < 5; ++round) {
-      // Some pairs of points lie on a border between two bins to the last digit.
+      // The descriptors are not equal, since some pairs of points lie exactly on the border of two bins.
       EXPECT_GT(similarity(place_descriptor(moved(view, test::random_pose(rng, 20.0, kPi))), descriptor), 0.995)
           << seed;
     }
@@ -102,7 +102,7 @@ TEST(PlaceDescriptor, APlaceLooksMoreLikeItselfThanLikeAnyOther) {
   }
 }
 
-TEST(PlaceDescriptor, HasLengthOneAndLikenessIsBetweenNoneAndOne) {
+TEST(PlaceDescriptor, HasLengthOneAndSimilarityIsBetweenZeroAndOne) {
   std::vector<PlaceDescriptor> descriptors;
   for (unsigned seed = 1; seed <= 6; ++seed) {
     descriptors.push_back(place_descriptor(test::view_from(test::strange_place(seed), {})));
@@ -119,7 +119,7 @@ TEST(PlaceDescriptor, HasLengthOneAndLikenessIsBetweenNoneAndOne) {
   }
 }
 
-TEST(PlaceDescriptor, OfNothingIsLikeNothing) {
+TEST(PlaceDescriptor, OfAViewWithoutPointsIsSimilarToNothing) {
   const PlaceDescriptor nothing = place_descriptor({});
   EXPECT_EQ(nothing, PlaceDescriptor{});
   EXPECT_EQ(place_descriptor(view_of_points({point(1.0, 2.0, 3.0)})), PlaceDescriptor{}) << "no pair";
@@ -127,7 +127,7 @@ TEST(PlaceDescriptor, OfNothingIsLikeNothing) {
   EXPECT_EQ(similarity(nothing, place_descriptor(test::view_from(test::uneven_room(), {}))), 0.0);
 }
 
-/// All of them, sorted; of equally alike ones the earlier first.
+/// Sorts all places, the earlier ones first among equally similar ones.
 std::vector<LikelyPlace> by_full_sort(const std::vector<PlaceDescriptor>& descriptors, std::size_t node,
                                       std::size_t end, std::size_t count) {
   std::vector<LikelyPlace> places;
@@ -137,7 +137,7 @@ std::vector<LikelyPlace> by_full_sort(const std::vector<PlaceDescriptor>& descri
   std::stable_sort(places.begin(), places.end(),
                    [](const LikelyPlace& a, const LikelyPlace& b) { return a.similarity > b.similarity; });
   std::vector<LikelyPlace> kept;
-  std::vector<bool> taken(end + 2, false);  // shifted by one
+  std::vector<bool> taken(end + 2, false);  // Its indices are shifted by one.
   for (const LikelyPlace& place : places) {
     const std::size_t at = place.node + 1;
     const bool beside = taken[at - 1] || taken[at] || (at + 1 < taken.size() && taken[at + 1]);
@@ -154,7 +154,7 @@ TEST(PlaceIndex, FindsTheFirstOfAFullSortAndOfNeighboursTheBetter) {
   std::vector<PlaceDescriptor> descriptors;
   PlaceIndex index;
   for (std::size_t i = 0; i < kCount; ++i) {
-    const bool seen_before = i > 10 && i % 4 == 0;  // ties
+    const bool seen_before = i > 10 && i % 4 == 0;  // These make ties.
     descriptors.push_back(seen_before ? descriptors[i / 3] : random_signature(rng));
     index.add(descriptors.back());
   }

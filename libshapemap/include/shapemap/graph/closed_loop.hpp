@@ -7,12 +7,12 @@
 
 namespace shapemap {
 
-/// Two places that are known to be near each other though the log came to them at different times.
+/// A loop: the robot came to one place at two different times, and matches hold its two keyframes to each other.
 struct ClosedLoop {
-  std::size_t a = 0;  ///< index of a position; the earlier one
+  std::size_t a = 0;  ///< index of the earlier scan
   std::size_t b = 0;
-  Pose2 a_from_b;         ///< of the best of the alignments behind it
-  double strength = 0.0;  ///< log odds of these, summed
+  Pose2 a_from_b;         ///< pose of the best match of the loop
+  double strength = 0.0;  ///< sum of the log odds of its matches
 };
 
 }  // namespace shapemap

@@ -9,34 +9,34 @@
 
 namespace shapemap {
 
-/// A pose that node `b` of a graph may have in the frame of node `a`, by a match of their two scans.
+/// A candidate is a pose that node `b` of a graph may have in the frame of node `a`, by a match of their two scans.
 struct EdgeCandidate {
   std::size_t a = 0;
   std::size_t b = 0;  ///< the later node
   Pose2 a_from_b;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< of (x, y, theta), in the frame of `a`
-  /// The logarithm of odds that it is right, by the two scans alone. Of an odometry edge, up to a constant that all of
-  /// its candidates share.
+  /// The log odds that the candidate is right, by the two scans alone. All candidates of an odometry edge share an
+  /// unknown constant in it.
   double score = 0.0;
-  double best_deviation_m = 0.0;  ///< best_deviation_m() of the match, where it was asked for: 0 is well held
+  double best_deviation_m = 0.0;  ///< best_deviation_m() of the match where it is needed; 0 means well constrained
 };
 
-/// All that node `b` may be to node `a`: the next along the way, or one at the same place long before.
+/// An edge has the candidates for the relative pose of two nodes: consecutive ones, or two that a loop may join.
 struct Edge {
   std::size_t a = 0;
   std::size_t b = 0;                      ///< the later node
-  std::vector<EdgeCandidate> candidates;  ///< the best first; none: nothing joins the two
-  double probability = 0.0;               ///< that the first candidate is right
-  double any_probability = 0.0;           ///< that one of them is, by how well the best fits
+  std::vector<EdgeCandidate> candidates;  ///< best first; without any, the edge joins nothing
+  double probability = 0.0;               ///< probability that the first candidate is right
+  double any_probability = 0.0;           ///< probability that any candidate is right, by the fit of the best
   double insufficient_view = 0.0;         ///< insufficient_view() of the two scans
 
   bool exists() const { return !candidates.empty(); }
 };
 
-/// Returns an edge from node `a` to the next, without candidates.
+/// Returns an edge without candidates from node `a` to the next.
 Edge edge_to_next(std::size_t a, double insufficient_view);
 
-/// The first candidates of the edges that tell how the robot usually moves: nine of ten of them at least are right.
+/// Returns the first candidates of the edges that are more than 0.9 probable, from which usual motions can be learned.
 std::vector<Pose2> sure_steps(const std::vector<Edge>& edges);
 
 }  // namespace shapemap

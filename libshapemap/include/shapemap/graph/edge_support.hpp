@@ -3,15 +3,15 @@
 
 namespace shapemap {
 
-/// What all other pairs of scans of two pieces say of a place, by MapScore. They do not tell independently of each
-/// other, so only the balance counts.
+/// The evidence for and against a candidate, by MapScore, of all other pairs of scans of the two submaps. The pairs are
+/// not independent, so only the balance of both counts.
 struct EdgeSupport {
   double for_it = 0.0;
   double against_it = 0.0;
 
   void add(double evidence) { (evidence > 0.0 ? for_it : against_it) += evidence > 0.0 ? evidence : -evidence; }
 
-  /// -1: all against it, 0: nothing said, 1: all for it.
+  /// Returns the balance, from -1 (all evidence is against it) over 0 (there is none) to 1 (all is for it).
   double value() const;
 };
 

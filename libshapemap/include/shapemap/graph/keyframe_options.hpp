@@ -6,13 +6,13 @@
 
 namespace shapemap {
 
-/// Which scans others are aligned to.
+/// These options say which scans become keyframes, and when keyframes are culled.
 struct KeyframeOptions {
   double step_m = 0.50;
   double turn_rad = 20 * kDegree;
   int settle_at = 1000;
 
-  /// Within this of a keyframe, a scan is at its place.
+  /// Returns the tolerance within which a scan is at the place of a keyframe.
   PoseTolerance near() const { return {step_m, turn_rad}; }
 
   template <class Self, class Visit>

@@ -10,14 +10,15 @@
 
 namespace shapemap {
 
-/// How well nodes of a solved pose graph are held to each other, by the best path from one to the other alone: no
-/// better than that is certain without inverting the whole system, and what else holds them only makes it better.
+/// Gives the covariance of the relative pose of two nodes of a solved pose graph, by the shortest path between them
+/// alone. This is an upper estimate that needs no inverse of the whole system: all other paths only make it smaller.
 class RelativeCovariance {
  public:
-  /// Throws std::invalid_argument for a constraint of nodes that do not exist.
+  /// Keeps references to both. Throws std::invalid_argument for a constraint of nodes that do not exist.
   RelativeCovariance(const std::vector<Pose2>& map_from_node, const std::vector<PoseConstraint>& constraints);
 
-  /// Of (x, y, theta) of node `b` in the frame of node `a`. Not finite where no path joins the two.
+  /// Returns the covariance of (x, y, theta) of node `b` in the frame of node `a`, in metres and radians. It is
+  /// infinite if no path joins the two.
   Eigen::Matrix3d between(std::size_t a, std::size_t b) const;
 
  private:
@@ -26,7 +27,7 @@ class RelativeCovariance {
     std::size_t constraint;
     double length;
   };
-  /// For each node, the constraint by which the best path from `a` comes to it.
+  /// Returns for each node the last constraint on the shortest path from `a` to it.
   std::vector<std::size_t> arrivals(std::size_t a, std::size_t b) const;
 
   const std::vector<Pose2>& map_from_node_;

@@ -12,21 +12,22 @@
 
 namespace shapemap {
 
-/// What a match counts for that others may support, by its own log odds: as logarithm of odds, never negative.
+/// Returns the log odds, 0 or more, that a match with these log odds of its own adds to others that support it.
 double worth_among_others(double log_odds);
 
-/// The same of a candidate in its cluster.
+/// Returns the same for a candidate in its cluster.
 double worth_of_member(const EdgeCandidate& member);
 
-/// Hypotheses that say the same: several scans of one stretch of the way lie so about several of another.
+/// Loop candidates that agree: they match several scans of one stretch of the way to several scans of another, with
+/// consistent relative poses.
 struct LoopCluster {
   std::vector<EdgeCandidate> members;  ///< most probable first
-  double strength = 0.0;               ///< log odds of the best member of each node, summed
-  std::size_t num_a = 0;               ///< distinct nodes of the one stretch
-  std::size_t num_b = 0;
+  double strength = 0.0;               ///< smaller sum of both stretches over the worth of the best member of each node
+  std::size_t num_a = 0;               ///< number of distinct nodes in the earlier stretch
+  std::size_t num_b = 0;               ///< number of distinct nodes in the later stretch
 };
 
-/// What makes a cluster.
+/// These options say which loop candidates make a cluster.
 struct ClusterOptions {
   int window = 4;
   PoseTolerance same{0.40, 6 * kDegree};
@@ -46,8 +47,8 @@ struct ClusterOptions {
   }
 };
 
-/// `map_from_node` is the chain, of which only short pieces are trusted: pieces with the same `submap_of_node`.
-/// Strongest first. Hypotheses that no other one supports make no cluster.
+/// Returns the clusters of `candidates`, strongest first. `map_from_node` has the poses by odometry edges, which are
+/// trusted only within a submap. A candidate that no other one supports makes no cluster.
 std::vector<LoopCluster> loop_clusters(const std::vector<EdgeCandidate>& candidates,
                                        const std::vector<Pose2>& map_from_node,
                                        const std::vector<std::size_t>& submap_of_node, const ClusterOptions& options);

@@ -10,7 +10,7 @@
 #include "shapemap/loops/loop_clusters.hpp"
 #include "shapemap/matching/match_cache.hpp"
 
-/// Where places may have been seen before.
+/// These functions find loop candidates.
 namespace shapemap {
 
 struct LoopDetectionOptions {
@@ -36,20 +36,20 @@ struct LoopDetectionOptions {
 
 using NodeViews = std::vector<std::shared_ptr<const ScanView>>;
 
-/// How scans are compared to find loops.
+/// These are the settings with which scans are matched to find loops.
 struct LoopSearch {
   const MatchSearchOptions& matching;
   const LoopDetectionOptions& detection;
   Execution execution;
-  MatchCache* store = nullptr;  ///< by the numbers of the nodes; may be null
+  MatchCache* store = nullptr;  ///< its keys have the indices of nodes; may be null
 };
 
-/// Each node from `first` on, aligned to the earlier ones that look most alike. Stops with what was found by then when
-/// the observer asks to.
+/// Matches each node from `first` on to the earlier nodes with the most similar place descriptors, and returns the
+/// candidates. When the observer asks to stop, it returns those found by then.
 std::vector<EdgeCandidate> likely_loops(const NodeViews& views, std::size_t first, const LoopSearch& search);
 
-/// The few nodes before and after each of `links` (node i to node i + 1), all aligned to each other. Throws Interrupted
-/// when the observer asks to stop.
+/// Matches the few nodes before each of `edges` (from node i to node i + 1) to the few nodes after it, and returns the
+/// candidates. Throws Interrupted when the observer asks to stop.
 std::vector<EdgeCandidate> cross_edge_matches(const NodeViews& views, const std::vector<std::size_t>& edges,
                                               const LoopSearch& search);
 

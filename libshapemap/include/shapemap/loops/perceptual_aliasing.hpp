@@ -6,15 +6,15 @@
 #include "shapemap/graph/edge.hpp"
 #include "shapemap/loops/loop_clusters.hpp"
 
-/// Places that look like others.
+/// Perceptual aliasing is that different places look the same.
 namespace shapemap {
 
-/// `hypotheses` as far as they tell more than that places look alike here. Where two scans a short way apart seem to be
-/// of one place, though the chain is sure that they are not, that one is left out, and what else is known of these
-/// nodes and their neighbours loses its odds: other places may look like that as well.
+/// Returns the loop candidates that are more than perceptual aliasing. A candidate between two nodes a short way apart
+/// is left out if the sure odometry edges between them contradict it. All other candidates of these nodes and their
+/// neighbours then lose its log odds, because more distant places may look the same as well.
 ///
-/// Edges that are at least `sure_probability` probable are not questioned. `map_of_odometry`: poses of the nodes by the
-/// first alternative of each link. Throws std::invalid_argument unless it has more nodes than links.
+/// Edges that are at least `sure_probability` probable are taken as certain. `map_of_odometry` has the poses of the
+/// nodes by the first candidate of each edge. Throws std::invalid_argument unless it has more nodes than `edges`.
 std::vector<EdgeCandidate> without_aliases(const std::vector<EdgeCandidate>& candidates, const std::vector<Edge>& edges,
                                            const std::vector<Pose2>& map_of_odometry, double sure_probability);
 
