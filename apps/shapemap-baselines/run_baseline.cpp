@@ -51,7 +51,7 @@ std::vector<PlacedScan> place_all(const Log& log, const std::vector<Motion>& mot
                                   std::vector<std::string>& warnings) {
   const std::unique_ptr<SlamMethod> method = make_method(arguments.method, arguments.settings);
   cli::ConsoleObserver observer(!arguments.quiet);
-  const cli::Stopwatch stopwatch;
+  const Stopwatch stopwatch;
   const double max_s = arguments.settings.run.max_seconds;
   const std::size_t num_scans = log.scans.size();
   for (std::size_t i = 0; i < num_scans; ++i) {
@@ -112,7 +112,7 @@ void print_summary(const Arguments& arguments, const Log& log, const std::vector
 }
 
 int run(const Arguments& arguments) {
-  const cli::Stopwatch total;
+  const Stopwatch total;
   const BaselineSettings& settings = arguments.settings;
   check_paths(arguments);
   Log log = read_log(arguments.log_path, arguments.format, settings.reading);

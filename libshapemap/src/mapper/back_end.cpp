@@ -2,7 +2,6 @@
 #include "back_end.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "edge_verdict.hpp"
@@ -13,6 +12,7 @@
 #include "map_snapshot.hpp"
 #include "mapper_numbers.hpp"
 #include "motion_rescoring.hpp"
+#include "shapemap/core/stopwatch.hpp"
 #include "three_scan_scores.hpp"
 #include "trajectory_builder.hpp"
 
@@ -44,14 +44,6 @@ class Quiet : public RunObserver {
 
  private:
   RunObserver& observer_;
-};
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
 void tell_loops(const OptimizedMap& map, MappingEvents& events) {

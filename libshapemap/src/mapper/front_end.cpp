@@ -2,24 +2,23 @@
 #include "front_end.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <numeric>
 
 #include "mapper_numbers.hpp"
 #include "shapemap/core/parallel_for.hpp"
+#include "shapemap/core/stopwatch.hpp"
+#include "shapemap/matching/candidate_order.hpp"
 #include "shapemap/matching/match_probability.hpp"
 
 namespace shapemap {
 namespace {
 
-bool more_likely(const MatchCandidate& a, const MatchCandidate& b) { return a.score > b.score; }
-
 /// Where scans follow each other closely, candidates far from the expected pose are less likely.
 void expect(const ExpectedPose& expected, const MatchCandidate& at_expected, std::vector<MatchCandidate>& candidates) {
   add_if_new(at_expected, candidates);
   for (MatchCandidate& candidate : candidates) candidate.score -= surprise(expected, candidate.ref_from_query);
-  std::stable_sort(candidates.begin(), candidates.end(), more_likely);
+  std::stable_sort(candidates.begin(), candidates.end(), is_more_likely);
 }
 
 }  // namespace
@@ -53,9 +52,9 @@ std::vector<TrackedScan> FrontEnd::track(const std::vector<IncomingScan>& scans)
 double FrontEnd::timed_for(std::size_t count, const std::function<void(std::size_t)>& work) const {
   std::vector<double> seconds(count, 0.0);
   parallel_for(count, options_.run.threads, [&](std::size_t i) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     work(i);
-    seconds[i] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds[i] = watch.seconds();
   });
   return std::accumulate(seconds.begin(), seconds.end(), 0.0);
 }
@@ -98,9 +97,9 @@ void FrontEnd::track(TrackedScan& scan) {
   if (!recent_.empty() && scan.session != recent_.back().session) tracker_.start(nullptr);
   if (scan.scan_index > last_with_shape_ + 1) tracker_.forget_motion();
   last_with_shape_ = scan.scan_index;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   scan.attached = tracker_.follow(*scan.view);
-  match_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  match_s_ += watch.seconds();
   if (scan.attached) {
     scan.keyframe.reset();
     return;

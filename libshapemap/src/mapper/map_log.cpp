@@ -2,10 +2,10 @@
 #include "shapemap/mapper/map_log.hpp"
 
 #include <algorithm>
-#include <chrono>
 
 #include "paper_method.hpp"
 #include "shapemap/core/errors.hpp"
+#include "shapemap/core/stopwatch.hpp"
 #include "shapemap/grid/scan_consistency.hpp"
 #include "shapemap/mapper/mapper.hpp"
 #include "shapemap/mapper/mirror_check.hpp"
@@ -50,9 +50,9 @@ MapResult map_log(const Log& log, const MappingOptions& options, MappingEvents& 
   } catch (const Interrupted&) {
     result.interrupted = true;
   }
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   judge_consistency(log.scans, options.returns, options.consistency, result.components);
-  result.times.consistency_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.times.consistency_s = watch.seconds();
   result.largest_component = largest_component(result.components);
   if (const TurnComparison turns = compare_turns(log.scans, sessions_of(log), result.placed()); turns.is_mirrored()) {
     events.on_warning("the scans seem to be mirrored: of the turns that the log itself records, " +

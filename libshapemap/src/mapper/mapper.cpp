@@ -77,12 +77,13 @@ class Mapper::Implementation {
   }
 
   std::vector<ScanUpdate> add_scans(const Scan* first, std::size_t count, std::size_t session) {
-    if (is_finished_) throw std::logic_error("a scan is added to a map that is finished");
+    require_usable();
     std::vector<IncomingScan> scans;
     for (std::size_t i = 0; i < count; ++i) {
       require_plausible(first[i], front_end_.num_scans() + i);
       scans.push_back({first[i], session});
     }
+    is_usable_ = false;  // should anything throw from here on, the parts of the mapper no longer fit each other
     std::vector<ScanUpdate> updates;
     for (TrackedScan& scan : front_end_.track(scans)) {
       events_.on_shape(scan.scan_index, scan.view->points);
@@ -90,12 +91,13 @@ class Mapper::Implementation {
       events_.on_scan(updates.back());
       thread_ ? thread_->add(std::move(scan)) : back_end_->add(std::move(scan));
     }
+    is_usable_ = true;
     return updates;
   }
 
   MapResult finish() {
-    if (is_finished_) throw std::logic_error("a map is finished twice");
-    is_finished_ = true;
+    require_usable();
+    is_usable_ = false;
     MapResult result = thread_ ? thread_->finish() : back_end_->finish();
     result.times.shape_s += front_end_.shape_s();
     result.times.align_s += front_end_.match_s();
@@ -107,6 +109,10 @@ class Mapper::Implementation {
   const Published& published() const { return published_; }
 
  private:
+  void require_usable() const {
+    if (!is_usable_) throw std::logic_error("the mapper has finished its map, or an exception has ended it");
+  }
+
   void publish(Map map) { events_.on_map(*published_.add(std::move(map))); }
 
   MappingOptions options_;
@@ -115,7 +121,7 @@ class Mapper::Implementation {
   FrontEnd front_end_;
   OdometryTrail trail_;
   Published published_;
-  bool is_finished_ = false;
+  bool is_usable_ = true;
   std::unique_ptr<BackEnd> back_end_;
   std::unique_ptr<BackEndThread> thread_;  ///< the last member, because the thread uses the others until it ends
 };

@@ -5,18 +5,17 @@
 #include <set>
 
 #include "shapemap/core/parallel_for.hpp"
+#include "shapemap/matching/candidate_order.hpp"
 #include "three_scan_scores.hpp"
 
 namespace shapemap {
 namespace {
 
-bool more_likely(const MatchCandidate& a, const MatchCandidate& b) { return a.score > b.score; }
-
 void rescore(const MotionPrior& prior, const RobustOptions& options, std::size_t i, KeyframeGraph& graph) {
   const MatchSearchOptions& search = options.matcher.search;
   std::vector<MatchCandidate>& known = graph.edges[i].candidates;
   for (MatchCandidate& candidate : known) candidate.score -= prior.surprise(candidate.ref_from_query);
-  std::stable_sort(known.begin(), known.end(), more_likely);
+  std::stable_sort(known.begin(), known.end(), is_more_likely);
   if (match_probability(known.front(), lead_of_first(known)) < options.map_search.doubt_below) {
     const auto more = find_usual_candidates(*graph.keyframes[i].view, *graph.keyframes[i + 1].view, search, prior);
     known.insert(known.end(), more.begin(), more.end());

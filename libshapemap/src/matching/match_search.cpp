@@ -5,13 +5,12 @@
 #include <cmath>
 
 #include "matching_numbers.hpp"
+#include "shapemap/matching/candidate_order.hpp"
 #include "shapemap/matching/lcs_hypotheses.hpp"
 #include "shapemap/matching/rotation_hypotheses.hpp"
 
 namespace shapemap {
 namespace {
-
-bool better(const MatchCandidate& a, const MatchCandidate& b) { return a.score > b.score; }
 
 MatchCandidate judged_fit(const ScanView& reference, const ScanView& query, const LineFit& fit,
                           const MatchSearchOptions& options) {
@@ -47,7 +46,7 @@ class Search {
         coarse.push_back(judged(shift_m, rotation_rad));
       }
     }
-    std::stable_sort(coarse.begin(), coarse.end(), better);
+    std::stable_sort(coarse.begin(), coarse.end(), is_more_likely);
     if (coarse.size() > static_cast<std::size_t>(options_.candidates.refined)) {
       coarse.resize(static_cast<std::size_t>(options_.candidates.refined));
     }
@@ -127,7 +126,7 @@ MatchCandidate candidate_at(const ScanView& reference, const ScanView& query, co
 }
 
 std::vector<MatchCandidate> best_distinct(std::vector<MatchCandidate> candidates, int count) {
-  std::stable_sort(candidates.begin(), candidates.end(), better);
+  std::stable_sort(candidates.begin(), candidates.end(), is_more_likely);
   std::vector<MatchCandidate> distinct;
   for (const MatchCandidate& pose : candidates) {
     if (distinct.size() == static_cast<std::size_t>(count)) break;

@@ -2,13 +2,13 @@
 #include "shapemap/paper/paper_align.hpp"
 
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <sstream>
 #include <thread>
 
 #include "shapemap/core/errors.hpp"
 #include "shapemap/core/parallel_for.hpp"
+#include "shapemap/core/stopwatch.hpp"
 #include "shapemap/paper/lcs.hpp"
 
 namespace shapemap {
@@ -148,19 +148,6 @@ PaperAlignment judged(PaperAlignment alignment, const TrustOptions& trust) {
   alignment.status = PaperStatus::kOk;
   return alignment;
 }
-
-class Stopwatch {
- public:
-  double lap_s() {
-    const auto now = std::chrono::steady_clock::now();
-    const double lap = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return lap;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 }  // namespace
 

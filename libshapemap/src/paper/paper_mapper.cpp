@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shapemap/paper/paper_mapper.hpp"
 
-#include <chrono>
 #include <utility>
 
 #include "shapemap/core/errors.hpp"
+#include "shapemap/core/stopwatch.hpp"
 #include "shapemap/scan/plausibility.hpp"
 
 namespace shapemap {
@@ -27,9 +27,9 @@ const PaperScanResult& PaperMapper::add_scan(const Scan& scan) {
   outcome.scan_index = result_.scans.size();
   outcome.timestamp_s = scan.timestamp_s;
   require_plausible(scan, outcome.scan_index);
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const Shape shape = shape_of(scan, options_.returns, options_.polylines, options_.shape);
-  const double shape_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double shape_s = watch.seconds();
   if (listener_) listener_->on_shape(outcome.scan_index, shape.points);
 
   if (shape.size() < static_cast<std::size_t>(options_.shape.min_points)) {

@@ -203,6 +203,23 @@ TEST(Push, RefusesWhatNoSensorRecordsAndGoesOn) {
   EXPECT_THROW(Mapper{wrong}, ConfigError);
 }
 
+TEST(Push, AListenerThatThrowsEndsTheMapper) {
+  struct Full : MappingEvents {
+    void on_scan(const ScanUpdate& scan) override {
+      if (scan.scan == 2) throw std::runtime_error("full");
+    }
+  };
+  for (const bool background : {false, true}) {
+    Full full;
+    Mapper mapper(culling(), {true, background}, &full);
+    const std::vector<Scan>& scans = one_lap().log.scans;
+    mapper.add_scans(scans.data(), 2);
+    EXPECT_THROW(mapper.add_scans(&scans[2], 3), std::runtime_error);
+    EXPECT_THROW(mapper.add_scan(scans[5]), std::logic_error);
+    EXPECT_THROW(mapper.finish(), std::logic_error);
+  }
+}
+
 TEST(Push, OfNothingIsNoMap) {
   for (const bool background : {false, true}) {
     Mapper mapper(culling(), {true, background});

@@ -43,8 +43,9 @@ class Mapper {
   Mapper& operator=(const Mapper&) = delete;
 
   /// Adds the next scan. `session` is the number of the recording that it is from; the motion between two sessions is
-  /// unknown. Throws InputError for a scan that no sensor can have recorded (scan/plausibility.hpp), and
-  /// std::logic_error after finish().
+  /// unknown. Throws InputError for a scan that no sensor can have recorded (scan/plausibility.hpp); the mapper then
+  /// goes on without it. Throws std::logic_error after finish(), and after any other exception, such as that of a
+  /// listener: it ends the mapper.
   ScanUpdate add_scan(const Scan& scan, std::size_t session = 0);
 
   /// Adds several scans of one session, which are worked on in parallel. The result is that of adding them one by one.
